@@ -16,6 +16,7 @@ import numpy as np
 
 WORD = re.compile(r"([A-Z])\s*([-+]?[0-9.]+)")
 BETWEEN = 16  # samples of every block
+SOON = 256  # blocks in which the next row most often ends
 
 
 def joints_of(text: str) -> np.ndarray:
@@ -86,10 +87,15 @@ def ends(at: np.ndarray, wanted: np.ndarray) -> list[int]:
     """The block that ends at each pose, in order; ValueError where there is none."""
     found, start = [], 0
     for row, pose in enumerate(wanted):
-        near = (np.abs(at[start:, :3] - pose[:3]).max(1) < 1e-3) & (np.abs(at[start:, 3:] - pose[3:]).max(1) < 1e-5)
-        if not near.any():
+        for following in (at[start : start + SOON], at[start + SOON :]):
+            off = np.abs(following - pose)
+            near = (off[:, :3].max(1, initial=0) < 1e-3) & (off[:, 3:].max(1, initial=0) < 1e-5)
+            if near.any():
+                found.append(start + int(np.argmax(near)))
+                break
+            start += len(following)
+        else:
             raise ValueError(f"no block ends at row {row}")
-        found.append(start + int(np.argmax(near)))
         start = found[-1] + 1
     return found
 

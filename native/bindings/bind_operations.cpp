@@ -143,17 +143,17 @@ void bind_operations(py::module_& m) {
       "rough",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
          const Tool& tool, const ArrayLike& axis, double clearance, double stepdown, double engagement,
-         double allowance, double tolerance, double slope, bool climb, double feed, double plunge,
+         double allowance, double tolerance, double slope, bool climb, double feed, double plunge, double depth,
          const ProgressLike& progress) {
         tool.require_revolved("plan.rough");
-        const plan::RoughOptions options{stepdown, engagement, allowance, tolerance, slope, climb, feed, plunge};
+        const plan::RoughOptions options{stepdown, engagement, allowance, tolerance, slope, climb, feed, plunge, depth};
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::rough(scene, tool, options, listener);
                          });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "stepdown"_a,
-      "engagement"_a, "allowance"_a, "tolerance"_a, "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a,
+      "engagement"_a, "allowance"_a, "tolerance"_a, "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "depth"_a, "progress"_a,
       "For riffler.plan.rough.");
   m.def(
       "outline",

@@ -29,12 +29,12 @@ double ball_at_tip(const Tool& tool) {
 }  // namespace
 
 FinishSurface::FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures, const Tool& tool,
-                             const FinishOptions& options, std::vector<std::vector<Vec2>> region)
+                             const FinishOptions& options, const std::vector<std::vector<Vec2>>& region)
     : mesh_(joined(part, fixtures)),
       part_triangles_(part.triangles.size()),
       drop_(mesh_, tool, {0, 0, 1}, options.allowance),
       options_(options),
-      region_(std::move(region)),
+      region_(region),
       tolerance_(kRows * options.tolerance),
       low_(mesh::bounds(mesh_).lower.z - 1) {
   if (const double r = ball_at_tip(tool); r > 0) ball_ = r + options.allowance;
@@ -131,17 +131,6 @@ std::vector<SurfacePoint> FinishSurface::follow(const std::vector<Vec2>& line) c
   return out;
 }
 
-bool FinishSurface::in_region(const Vec3& p) const {
-  if (region_.empty()) return true;
-  bool in = false;
-  for (const std::vector<Vec2>& curve : region_)
-    for (std::size_t k = 0, j = curve.size() - 1; k < curve.size(); j = k++) {
-      const Vec2 &a = curve[k], &b = curve[j];
-      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;
-    }
-  return in;
-}
-
 bool FinishSurface::meant_slope(double slope) const {
   return slope >= options_.min_slope - kSlopeSlack && slope <= options_.max_slope + kSlopeSlack;
 }
@@ -166,7 +155,8 @@ double FinishSurface::rested_slope(const SurfacePoint& p) const {
 }
 
 bool FinishSurface::wanted_face(int triangle, const Vec3& point, double slope) const {
-  return (chosen_.empty() || chosen_[static_cast<std::size_t>(triangle)]) && meant_slope(slope) && in_region(point);
+  return (chosen_.empty() || chosen_[static_cast<std::size_t>(triangle)]) && meant_slope(slope) &&
+         (region_.empty() || region_.holds(Vec2(point)));
 }
 
 bool FinishSurface::creased(const SurfacePoint& a, const SurfacePoint& b) const {

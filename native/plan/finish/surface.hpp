@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "plan/finish/region.hpp"
 #include "riffler/plan/drop.hpp"
 #include "riffler/plan/finish.hpp"
 
@@ -23,7 +24,7 @@ class FinishSurface {
  public:
   /// `part` and `fixtures` in the rows' frame.
   FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures, const Tool& tool, const FinishOptions& options,
-                std::vector<std::vector<Vec2>> region);
+                const std::vector<std::vector<Vec2>>& region);
 
   SurfacePoint at(const Vec2& p) const;
   /// The points over the line from `from` to `to`. Straight moves between the points are at most `tolerance` below the
@@ -77,7 +78,6 @@ class FinishSurface {
   /// shares with a wall, even if the triangle found is the wall's.
   double rested_slope(const SurfacePoint& p) const;
   bool rolls(const SurfacePoint& p) const;
-  bool in_region(const Vec3& p) const;
   Vec3 border(const SurfacePoint& in, const SurfacePoint& out) const;
 
   Mesh mesh_;
@@ -85,7 +85,7 @@ class FinishSurface {
   std::vector<Vec3> normals_;
   DropCutter drop_;
   const FinishOptions options_;
-  std::vector<std::vector<Vec2>> region_;
+  Region region_;
   std::vector<char> chosen_;           // which triangles of the part `faces` selects; empty: all
   std::optional<tool::Round> round_;   // the cutter's tip
   double level_end_ = 0;               // radius of the cutter's level end, mm

@@ -40,6 +40,7 @@ void check(const RoughOptions& o, const Tool& tool) {
                                 std::to_string(o.engagement));
   if (!(o.slope >= kLeastSlope && o.slope <= kPi / 4))
     throw std::invalid_argument("slope must be from 0.001 to π/4 rad, not " + std::to_string(o.slope));
+  base::require_not_negative(o.depth, "depth", base::kFiniteAndNotNegative);
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
   base::require_positive(o.plunge, "plunge", base::kPositiveAndFinite);
   if (o.stepdown > tool.length())
@@ -223,8 +224,10 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
   Field ground = heights(grid, DropCutter(part, cell), base::part(progress, 0.4, 0.5));
   for (double& z : ground) z += options.allowance;
   out.drops = 3 * grid.size();
+  const Box3 part_box = mesh::bounds(in.part);
   const double top = *std::max_element(tops.tops().begin(), tops.tops().end()),
-               bottom = std::max(stock.lower.z, mesh::bounds(in.part).lower.z);
+               lowest = options.depth > 0 ? part_box.upper.z - options.depth : part_box.lower.z,
+               bottom = std::max({stock.lower.z, part_box.lower.z, lowest});
   const LevelScene level{grid,
                          drop,
                          ground,

@@ -378,3 +378,28 @@ def test_the_example_runs(tmp_path):
     assert part.volume < data["left"] < data["stock"]["upper"][2] * 78 * 48
     called = [line.split()[0] for line in (folder / "plate.ngc").read_text().splitlines() if "M6" in line]
     assert called == ["T1", "T4", "T7", "T1"]
+
+
+def test_a_job_may_come_from_several_sides(folder):
+    path = changed(
+        folder,
+        ("pitch = 0.4", 'pitch = 0.5\ndirections = "xyz"'),
+        ("[machine]", '[machine]\nname = "tcp"'),
+        ("stepdown = 4", "stepdown = 4\ndepth = 5"),
+        ("cusp = 0.1", "cusp = 0.2\nrest = 0.1\norientation = [0, -3, 4]"),
+    )
+    data = command("job", "hill.toml", cwd=folder)
+    assert [op["poses"] > 0 for op in data["operations"]] == [True, True]
+    program = riffler.Program.read(folder / "hill.ngc", machine="tcp")
+    first, second = (program.poses[program.tool == number, 3:] for number in (3, 8))
+    assert np.allclose(first[0], [0, 0, 1], atol=1e-6) and np.allclose(second, [0, -0.6, 0.8], atol=1e-5)
+    assert np.allclose(first[-1], [0, -0.6, 0.8], atol=1e-5)  # the turn ends before the tool change
+    sheet = (folder / "hill.html").read_text()
+    assert "tool axis" in sheet and "(0, -0.6, 0.8)" in sheet
+    text = path.read_text().replace("[0, -3, 4]", "[0, 0, 0]")
+    path.write_text(text)
+    with pytest.raises(jobs.JobError, match=r"line \d+, \[\[operation\]\] 2 orientation: a direction expected"):
+        jobs.read(path)
+    path.write_text(text.replace("[0, 0, 0]", "[0, -1, 0]").replace('name = "tcp"', 'name = "3-axis"'))
+    with pytest.raises(jobs.JobError, match=r"orientation \[0.0, -1.0, 0.0\]: machine 3-axis holds the tool along z"):
+        jobs.run(jobs.read(path), write=False)

@@ -19,6 +19,7 @@ struct RoughOptions {
   bool climb = true;        ///< whether material lies to the right of the motion
   double feed = 1000;       ///< feed of cuts and links, mm/min
   double plunge = 300;      ///< feed of leads, mm/min
+  double depth = 0;         ///< of the lowest layer below the part's highest point, mm; 0: down to part or stock
 };
 
 /// The operation, and counts.

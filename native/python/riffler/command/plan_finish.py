@@ -46,6 +46,9 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_lead(parser)
+    parser.add_argument(
+        "--rest", metavar="MM", help="finish only where more material than this stands, as with a .rvol"
+    )
     add_scene(parser, "1000")
 
 
@@ -74,6 +77,7 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
         "angle": math.radians(finite(arguments.angle, "--angle")),
         "slopes": (slopes[0], min(slopes[1], math.pi / 2) if slopes[1] <= 90 else slopes[1]),
         "centre": None if arguments.centre is None else point(arguments.centre, "--centre"),
+        "rest": None if arguments.rest is None else length(arguments.rest, "--rest"),
         "climb": not arguments.conventional,
         "lead": lead_of(arguments),
         **feeds_of(arguments),

@@ -52,6 +52,11 @@ def add_scene(parser: Parser, feed: str) -> None:
     parser.add_argument("--stock", metavar="STOCK", help="WxDxH, a mesh or a .rvol file (default the part's box)")
     parser.add_argument("--pitch", metavar="MM", help="distance between the stock's rays")
     parser.add_argument("--origin", metavar="X,Y,Z", help="lower corner of a stock of given sizes")
+    parser.add_argument(
+        "--orientation",
+        metavar="X,Y,Z",
+        help="direction from tip to spindle (default 0,0,1); needs --post with rotary axes",
+    )
     parser.add_argument("--zero", metavar="X,Y,Z", help="zero point of the program (default 0,0,0)")
     add_fixtures(parser)
     add_rods(parser)
@@ -92,7 +97,7 @@ def run_operation(
         clearance=length(arguments.clearance, "--clearance"),
         machine=post,
         origin=np.zeros(3) if arguments.zero is None else point(arguments.zero, "--zero"),
-    )
+    ).along(_direction(arguments.orientation))
     with console.step(doing) as progress:
         op = planned(setup, tool, progress)
     if not len(op):
@@ -107,6 +112,16 @@ def run_operation(
     data = summary(op) | {"part": str(path), "out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
     console.result(data, f"{out.name} written", [*counts(data), *rows(data)])
     return 0
+
+
+def _direction(text: str | None) -> np.ndarray | None:
+    """The unit vector of ``--orientation``, which may have any length."""
+    if text is None:
+        return None
+    vector = point(text, "--orientation")
+    if not np.linalg.norm(vector) > 0:
+        raise ValueError(f"--orientation {text}: a direction expected, as in 0,-1,1")
+    return vector / np.linalg.norm(vector)
 
 
 def point(text: str, flag: str) -> np.ndarray:
@@ -124,11 +139,15 @@ def stock_of(arguments: argparse.Namespace, part: Mesh, allowance: float, consol
     if arguments.stock is None:
         if arguments.pitch is not None:
             pitch = length(arguments.pitch, "--pitch")
-        return Volume.block(lower, np.maximum(upper, lower + pitch), pitch, "z")
+        return Volume.block(lower, np.maximum(upper, lower + pitch), pitch, _directions(arguments))
     if is_solid(arguments.stock) and arguments.pitch is None:
         arguments.pitch = str(pitch)
-    arguments.directions = None if arguments.stock.lower().endswith(".rvol") else "z"
+    arguments.directions = None if arguments.stock.lower().endswith(".rvol") else _directions(arguments)
     return read_stock(arguments, console)
+
+
+def _directions(arguments: argparse.Namespace) -> str:
+    return "z" if arguments.orientation is None else "xyz"
 
 
 def summary(op: plan.Operation) -> dict[str, Any]:

@@ -31,6 +31,7 @@ def add_arguments(parser: Parser) -> None:
         ("--allowance", "0.3", "material to leave on the part"),
         ("--tolerance", "0.05", "largest error of curves"),
     )
+    parser.add_argument("--depth", metavar="MM", help="depth of the lowest layer below the part's highest point")
     parser.add_argument("--engagement", metavar="SHARE", default="0.4", help="widest cut in diameters (default 0.4)")
     parser.add_argument("--slope", metavar="DEG", default="3", help="slope of helices and ramps (default 3)")
     parser.add_argument("--conventional", action="store_true", help="mill with the material to the left of the motion")
@@ -52,6 +53,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
     return {
         "stepdown": length(arguments.stepdown, "--stepdown"),
+        "depth": None if arguments.depth is None else length(arguments.depth, "--depth"),
         "engagement": finite(arguments.engagement, "--engagement"),
         "allowance": finite(arguments.allowance, "--allowance"),
         "tolerance": length(arguments.tolerance, "--tolerance"),

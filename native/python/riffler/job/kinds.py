@@ -79,6 +79,7 @@ KINDS: dict[str, Kind] = {
         plan.rough,
         {
             "stepdown": POSITIVE,
+            "depth": POSITIVE,
             "engagement": POSITIVE,
             "allowance": NOT_NEGATIVE,
             "tolerance": POSITIVE,
@@ -98,6 +99,7 @@ KINDS: dict[str, Kind] = {
             "slopes": _slopes,
             "region": curves,
             "lead": NOT_NEGATIVE,
+            "rest": POSITIVE,
         },
         {},
     ),
@@ -134,6 +136,7 @@ KINDS: dict[str, Kind] = {
             "scallop": POSITIVE,
             "minimum_length": NOT_NEGATIVE,
             "overthickness": NOT_NEGATIVE,
+            "rest": POSITIVE,
         },
         {},
     ),

@@ -245,10 +245,8 @@ def _machine(
 ) -> tuple[str, dict[str, Any], NDArray[np.float64], float, NDArray[np.float64]]:
     sub = table.sub("machine") or Table(table.file, {}, ())
     name = sub.text("name", machines()) or "3-axis"
-    axis = sub.vector("axis", 3)
+    axis = _direction(sub, "axis")
     axis = np.array([0.0, 0.0, 1.0]) if axis is None else axis
-    if not np.linalg.norm(axis) > 0:
-        raise sub.error("axis", "a direction expected, as in [0, 0, 1]")
     clearance = sub.number("clearance", above=0) or 5.0
     zero = np.zeros(3)
     if isinstance(sub.data.get("zero"), str):
@@ -269,7 +267,18 @@ def _machine(
         more.done()
         options = dict(more.data)
     sub.done()
-    return name, options, axis / np.linalg.norm(axis), clearance, zero
+    return name, options, axis, clearance, zero
+
+
+def _direction(table: Table, key: str) -> NDArray[np.float64] | None:
+    """The key's unit vector; the file may have any length."""
+    vector = table.vector(key, 3)
+    if vector is None:
+        return None
+    length = float(np.linalg.norm(vector))
+    if not length > 0:
+        raise table.error(key, "a direction expected, as in [0, 0, 1]")
+    return vector / length
 
 
 def _tools(table: Table, reach: float) -> dict[int, JobTool]:
@@ -375,6 +384,8 @@ def _operations(table: Table, tools: Mapping[int, JobTool]) -> list[JobOperation
         name = sub.text("name") or f"{kind} with tool {number}"
         tool = tools[number]
         options = KINDS[kind].read(sub)
+        if (orientation := _direction(sub, "orientation")) is not None:
+            options["orientation"] = orientation
         for key in KINDS[kind].feeds:
             value = sub.number(key) if key == "spindle" else sub.number(key, above=0)
             value = value if value is not None else getattr(tool, key)

@@ -147,13 +147,13 @@ def _tools(job: Job, result: Result) -> str:
         number, op = done.job.tool.number, done.operation
         used[number] += op.report.time_s
         if len(op):
-            height = op.poses[:, :3] @ op.poses[0, 3:]
+            height = (op.poses[:, :3] - job.zero) @ op.poses[0, 3:]
             deepest[number] = min(deepest.get(number, np.inf), float(height.min()))
     rows = []
     for number, seconds in sorted(used.items()):
         tool = job.tools[number]
         flutes = "" if tool.flutes is None else str(tool.flutes)
-        lowest = f"{deepest[number] - float(job.zero @ job.axis):.3f}" if number in deepest else ""
+        lowest = f"{deepest[number]:.3f}" if number in deepest else ""
         rows.append(
             [f"T{number}", tool.name, shape(tool.tool), f"{tool.tool.length:g}", flutes, lowest, _time(seconds)]
         )
@@ -169,6 +169,8 @@ def shape(tool: Tool) -> str:
 
 def _operations(result: Result) -> str:
     rows = []
+    axes = [_direction(done.operation.poses[0, 3:]) if len(done.operation) else "" for done in result.operations]
+    tilted = len(set(axes) - {""}) > 1
     for k, done in enumerate(result.operations):
         op, report = done.operation, done.operation.report
         feed = op.feed[op.kind == 2]
@@ -177,6 +179,7 @@ def _operations(result: Result) -> str:
                 str(k + 1),
                 done.job.name,
                 f"T{done.job.tool.number}",
+                *([axes[k]] if tilted else []),
                 f"{feed.max():g}" if len(feed) else "",
                 f"{op.spindle:g}",
                 f"{report.cut_mm:.0f}",
@@ -185,9 +188,10 @@ def _operations(result: Result) -> str:
                 _time(report.time_s),
             ]
         )
-    rows.append(["", "all", "", "", "", "", "", "", _time(result.seconds)])
-    heads = ["", "operation", "tool", "feed", "rev/min", "cut", "in air", "mm³ removed", "time"]
-    return _wide(heads, rows, numbers={3, 4, 5, 6, 7, 8})
+    more = ["tool axis"] if tilted else []
+    heads = ["", "operation", "tool", *more, "feed", "rev/min", "cut", "in air", "mm³ removed", "time"]
+    rows.append(["", "all", *[""] * (len(heads) - 3), _time(result.seconds)])
+    return _wide(heads, rows, numbers=set(range(3 + len(more), len(heads))))
 
 
 def _operation(k: int, done: Done, pictures: dict[str, str]) -> list[str]:
@@ -267,6 +271,10 @@ def _box(part: Mesh) -> str:
 
 def _sizes(lower: np.ndarray, upper: np.ndarray) -> str:
     return " × ".join(f"{x:.4g}" for x in upper - lower)
+
+
+def _direction(axis: np.ndarray) -> str:
+    return f"({', '.join(f'{x + 0.0:.3g}' for x in axis.round(6))})"
 
 
 def _place(point: np.ndarray) -> str:

@@ -30,9 +30,11 @@ from .orientations import FreeOrientations, TiltReport, draw_map, free_orientati
 from .outlining import outline
 from .path_order import order_paths
 from .penciling import pencil_operation
+from .programs import program
 from .recorded import NoPathError, Recorded, StrokePath, from_recording, path_of_stroke
+from .rest import rest_region
 from .roughing import rough
-from .setups import Setup, program
+from .setups import Setup
 from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
 from .strategies.pencil import PencilPaths, PencilStats, pencil
@@ -94,6 +96,7 @@ __all__ = [
     "poses_of",
     "program",
     "read_curves",
+    "rest_region",
     "rough",
     "save",
     "swarf",

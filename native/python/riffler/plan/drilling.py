@@ -27,6 +27,7 @@ def drill(
     peck: float | None = None,
     *,
     tolerance: float = 0.05,
+    orientation: ArrayLike | None = None,
     feed: float = 200.0,
     spindle: float = 3000.0,
     progress: Progress = None,
@@ -51,6 +52,8 @@ def drill(
     tolerance : float
         Depth to which the drill may enter the part, mm; more than 0, because a hole of flat facets is narrower than a
         round hole.
+    orientation : array_like, shape (3,), optional
+        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
     feed : float
         Feed of the drill, mm/min.
     spindle : float
@@ -79,6 +82,7 @@ def drill(
     >>> op.report.stats["holes"], op.report.blocked[0].reason
     (1, 'points[1]: the cutter would enter the part by 2.500 mm')
     """
+    setup = setup.along(orientation)
     _core.require_revolved(tool, "plan.drill")
     places = np.asarray(points, dtype=float).reshape(-1, 3) if np.size(points) else np.zeros((0, 3))
     if not np.isfinite(places).all():

@@ -1,4 +1,4 @@
-"""Finishing: rows on the part's offset surface, in three axes."""
+"""Finishing: rows on the part's offset surface, along one tool axis."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
-from .operations import Operation, PlannedMoves, operation_of
+from .operations import Operation, OperationReport, PlannedMoves, operation_of
+from .rest import rest_region
 from .setups import Setup
 
 PATTERNS: tuple[str, ...] = tuple(_core.finish_patterns())
@@ -30,8 +31,11 @@ def finish(
     angle: float = 0.0,
     slopes: tuple[float, float] = (0.0, pi / 2),
     region: Sequence[ArrayLike] | NDArray[np.generic] | None = None,
+    rest: float | None = None,
+    reference_tool: Tool | None = None,
     centre: ArrayLike | None = None,
     climb: bool = True,
+    orientation: ArrayLike | None = None,
     feed: float = 1000.0,
     plunge: float | None = None,
     lead: float | None = None,
@@ -68,10 +72,17 @@ def finish(
     region : list of array_like, shape (k, 3), or array_like of int or bool, optional
         Closed curves, seen along the axis: finishes faces inside an odd number of them. Or indices of the part's
         triangles to finish, or for each triangle whether to finish it. None: all faces.
+    rest : float, optional
+        Finishes only where the stock stands more than this thickness (mm) above part + allowance and the tool can cut
+        it; see `rest_region`. May be combined with a region of triangles.
+    reference_tool : Tool, optional
+        With ``rest``: takes the rest of a tool that has finished the whole part, instead of the set-up's stock.
     centre : array_like, shape (3,), optional
         Centre of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
     climb : bool
         Whether "waterline" moves with the part on the right. Other patterns begin each row at its nearer end.
+    orientation : array_like, shape (3,), optional
+        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
     feed : float
         Feed of cuts and links, mm/min.
     plunge : float, optional
@@ -102,8 +113,19 @@ def finish(
     >>> op.poses.shape[1], op.reason, op.report.air_mm < op.report.cut_mm
     (6, '', True)
     """
+    setup = setup.along(orientation)
     low, high = (float(x) for x in slopes)
     curves, faces = _region_of(region, len(setup.part.triangles))
+    if rest is None and reference_tool is not None:
+        raise ValueError("reference_tool: needs rest, the thickness of material that may stay, as in rest=0.05")
+    if rest is not None:
+        if curves:
+            raise ValueError("rest: give either rest or curves as region; a region of triangles may be combined")
+        curves = rest_region(setup, tool, rest, allowance=allowance, reference_tool=reference_tool)
+        if not curves:
+            nothing = f"nowhere on the part stands more than {rest:g} mm of material that the tool reaches"
+            return Operation(np.zeros((0, 6)), np.zeros(0, np.uint8), np.zeros(0), tool, OperationReport(), nothing,
+                             float(spindle), float(tolerance))  # fmt: skip
     found = _core.finish(
         setup.part,
         setup.obstacles,

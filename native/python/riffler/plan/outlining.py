@@ -32,6 +32,7 @@ def outline(
     tolerance: float = 0.01,
     slope: float = radians(3),
     climb: bool = True,
+    orientation: ArrayLike | None = None,
     feed: float = 1000.0,
     plunge: float | None = None,
     lead: float | None = None,
@@ -71,6 +72,8 @@ def outline(
         Slope of ramps, rad.
     climb : bool
         Whether the part lies to the right of the motion, as it should for a spindle that turns clockwise.
+    orientation : array_like, shape (3,), optional
+        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
     feed : float
         Feed of cuts, mm/min.
     plunge : float, optional
@@ -102,6 +105,7 @@ def outline(
     >>> op.report.stats["loops"], op.report.stats["tabs"]
     (1, 3)
     """
+    setup = setup.along(orientation)
     if tabs < 0:
         raise ValueError(f"tabs must not be negative, not {tabs}")
     if depth is not None and not depth > 0:

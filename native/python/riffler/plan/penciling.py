@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._core import Collider, Tool
 from ..arguments import Progress
@@ -12,6 +13,7 @@ from ..hints import hinted
 from .locations import cutter_locations
 from .operations import CUT, Blocked, Operation
 from .path_order import order_paths
+from .rest import inside, rest_region
 from .setups import Setup
 from .strategies.pencil import pencil
 from .upright import ABOVE, Moves, joined, stock_tops
@@ -23,6 +25,8 @@ def pencil_operation(
     tool: Tool,
     *,
     tolerance: float = 0.01,
+    rest: float | None = None,
+    orientation: ArrayLike | None = None,
     feed: float = 800.0,
     plunge: float | None = None,
     spindle: float = 12000.0,
@@ -32,8 +36,8 @@ def pencil_operation(
     """Cuts along the valleys of the set-up's part, with the tool along the set-up's axis.
 
     The paths are those of `pencil`. Where cutter, shank or holder would touch part or fixtures, the tool is lifted; a
-    bound over each move proves that it is then clear. ``report.blocked`` lists places that no lift frees; they are left
-    out.
+    bound over each move proves that it is then clear. Left out, and listed in ``report.blocked``, are places that no
+    lift frees, and places where the lift is larger than the cutter's radius, as in valleys on the other side.
 
     Parameters
     ----------
@@ -43,6 +47,10 @@ def pencil_operation(
         A tool whose tip is a ball.
     tolerance : float
         Largest error of the paths, and depth to which cuts may enter the part, mm.
+    rest : float, optional
+        Cuts only where the stock stands more than this thickness (mm) above the part; see `rest_region`.
+    orientation : array_like, shape (3,), optional
+        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
     feed : float
         Feed of cuts, mm/min.
     plunge : float, optional
@@ -73,9 +81,11 @@ def pencil_operation(
     >>> op.report.stats["paths"], op.report.cut_mm > 25
     (1, True)
     """
+    setup = setup.along(orientation)
     for name, value in (("feed", feed), ("plunge", plunge)):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} must be positive and finite, not {value}")
+    curves = None if rest is None else rest_region(setup, tool, rest)
     found = pencil(setup.part, tool, tolerance=tolerance, progress=progress, **options)
     moves = Moves(setup, feed, feed / 3 if plunge is None else plunge)
     collider = Collider(joined([setup.part, *setup.obstacles])) if len(found) else None
@@ -86,11 +96,17 @@ def pencil_operation(
         cl, report = cutter_locations(path.orient({0: setup.axis}), tool, collider, tolerance=tolerance)
         blocked += [Blocked(one.reason, path.centres[one.point], 0.0) for one in report.blocked]
         blocked += [Blocked(one.reason, cl[one.row, :3], 0.0) for one in report.unsafe]
+        out = report.lift > tool.diameter / 2  # the ball is out of the valley
+        if out.any():
+            first = cl[int(np.argmax(out)), :3]
+            length = float(np.linalg.norm(np.diff(cl[:, :3], axis=0), axis=1)[out[1:]].sum())
+            blocked.append(Blocked("the tool does not reach the valley along this axis", first, length))
+        wanted = ~out if curves is None else ~out & inside(curves, setup.axis, cl[:, :3])
         after = report.points  # a blocked point has no row: divide the path there
         gaps = [k + 1 for k in range(len(cl) - 1) if any(after[k] < one.point < after[k + 1] for one in report.blocked)]
-        ends = sorted({one.row + 1 for one in report.unsafe} | set(gaps))
-        pieces = [piece for piece in np.split(cl, ends) if len(piece) > 1]
-        cuts += [piece[::-1] for piece in pieces[::-1]] if backwards else pieces
+        ends = sorted({one.row + 1 for one in report.unsafe} | set(gaps) | set(np.flatnonzero(np.diff(wanted)) + 1))
+        pieces = [piece for piece in np.split(np.arange(len(cl)), ends) if len(piece) > 1 and wanted[piece[0]]]
+        cuts += [cl[piece[::-1]] for piece in pieces[::-1]] if backwards else [cl[piece] for piece in pieces]
     tops = stock_tops(setup, tool, np.array([cut[0, :3] for cut in cuts]).reshape(-1, 3))
     for cut, top in zip(cuts, tops, strict=True):
         moves.approach(cut[0, :3], (top if np.isfinite(top) else -np.inf) + ABOVE)
@@ -98,5 +114,7 @@ def pencil_operation(
             moves.to(pose[:3], CUT)
         moves.retract()
     reason = found.reason or (blocked[0].reason if blocked else "there is no valley")
+    if rest is not None and found and not blocked:
+        reason = f"in no valley stands more than {rest:g} mm of material"
     stats = {"paths": len(found), "pieces": len(cuts), "retracts": max(0, len(cuts) - 1)}
     return moves.operation(tool, blocked, reason, stats, spindle, tolerance)

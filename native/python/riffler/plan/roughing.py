@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import radians
 
+from numpy.typing import ArrayLike
+
 from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
@@ -18,11 +20,13 @@ def rough(
     tool: Tool,
     *,
     stepdown: float = 2.0,
+    depth: float | None = None,
     engagement: float = 0.4,
     allowance: float = 0.3,
     tolerance: float = 0.05,
     slope: float = radians(3),
     climb: bool = True,
+    orientation: ArrayLike | None = None,
     feed: float = 1200.0,
     plunge: float | None = None,
     spindle: float = 12000.0,
@@ -44,6 +48,9 @@ def rough(
         A cutter that does not narrow above its widest place: flat, fillet, ball, taper or a profile like them.
     stepdown : float
         Height of a layer, mm.
+    depth : float, optional
+        Depth of the lowest layer below the part's highest point along the axis, mm, as for the first of two sides;
+        None: down to the underside of part or stock.
     engagement : float
         Largest width of cut as a share of the cutter's diameter, from 0.02 to 1. Moves that cut wider, as where
         the tool enters a narrow slot, are leads, at ``plunge``.
@@ -55,6 +62,8 @@ def rough(
         Slope of helices and ramps, rad, from 0.001.
     climb : bool
         Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
+    orientation : array_like, shape (3,), optional
+        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
     feed : float
         Feed of cuts and links, mm/min.
     plunge : float, optional
@@ -82,6 +91,9 @@ def rough(
     >>> op.report.largest_engagement <= 0.4
     True
     """
+    setup = setup.along(orientation)
+    if depth is not None and not depth > 0:
+        raise ValueError(f"depth must be positive, not {depth}")
     found = _core.rough(
         setup.part,
         setup.obstacles,
@@ -97,6 +109,7 @@ def rough(
         climb=climb,
         feed=feed,
         plunge=feed / 3 if plunge is None else plunge,
+        depth=0.0 if depth is None else depth,
         progress=progress,
     )
 

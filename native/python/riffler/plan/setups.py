@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from math import isfinite
 
@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from .._core import Mesh, Program, Tool, Volume
+from .._core import Mesh, Volume
 from ..arguments import Progress
-from ..hints import hinted
-from .operations import RAPID, Operation
+from .operations import Operation
 
 UPRIGHT = (0.0, 0.0, 1.0)
 ROUNDING = 1e-3  # mm by which a verified gouge may exceed the operation's tolerance, for rounding
@@ -65,20 +64,14 @@ class Setup:
         origin: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
         self.part, self.fixtures = part, tuple(fixtures)
-        self.axis, self.origin = _vector(axis, "axis"), _vector(origin, "origin")
-        if abs(np.linalg.norm(self.axis) - 1) > 1e-6:
-            raise ValueError(f"axis must be a unit vector, not {self.axis.tolist()}")
+        self.axis, self.origin = _unit(axis, "axis"), _vector(origin, "origin")
         self.clearance, self.machine = float(clearance), machine
         if not (isfinite(self.clearance) and self.clearance > 0):
             raise ValueError(f"clearance must be positive and finite, not {clearance}")
         if machine not in _core.machines():
             raise ValueError(f"machine must be one of {', '.join(_core.machines())}, not {machine!r}")
-        if machine == "3-axis" and tuple(self.axis) != UPRIGHT:
-            raise ValueError(
-                f"axis {self.axis.tolist()}: machine 3-axis holds the tool along z; turn part and stock so that the "
-                "axis is (0, 0, 1), or name a machine with rotary axes"
-            )
-        _check_stock(part, stock, self.axis)
+        _check_axis(machine, stock, self.axis, "axis")
+        _check_stock(part, stock)
         self._stock = copy(stock)
         self._before: list[tuple[Operation, Volume]] = []
         self._obstacles = [one.to_mesh() if isinstance(one, Volume) else one for one in self.fixtures]
@@ -100,6 +93,43 @@ class Setup:
     def obstacles(self) -> list[Mesh]:
         """The fixtures as meshes."""
         return list(self._obstacles)
+
+    def along(self, orientation: ArrayLike | None) -> Setup:
+        """This set-up with the tool along another direction. Both have the present stock.
+
+        Parameters
+        ----------
+        orientation : array_like, shape (3,), or None
+            Unit vector from tip to spindle. None: the set-up's axis.
+
+        Returns
+        -------
+        Setup
+
+        Raises
+        ------
+        ValueError
+            The machine cannot hold the tool there, or the stock has no rays for it.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
+        >>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5, directions="xyz")
+        >>> setup = riffler.plan.Setup(part, stock, machine="tcp")
+        >>> setup.along((0, -0.6, 0.8)).axis.tolist()
+        [0.0, -0.6, 0.8]
+        """
+        if orientation is None:
+            return self
+        if isinstance(orientation, (str, dict)) or np.shape(orientation) != (3,):
+            raise ValueError(
+                f"orientation must be a direction, three numbers from tip to spindle, not {orientation!r}; axes that "
+                "change along a path are planned with plan.pencil and path.orient"
+            )
+        out = copy(self)
+        out.axis = _unit(orientation, "orientation")
+        _check_axis(self.machine, self._stock, out.axis, "orientation")
+        return out
 
     def apply(self, op: Operation, progress: Progress = None) -> None:
         """Carves the stock with an operation; the next operation is planned on the result.
@@ -156,11 +186,27 @@ def _vector(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return out
 
 
-def _check_stock(part: Mesh, stock: Volume, axis: NDArray[np.float64]) -> None:
+def _unit(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    out = _vector(values, name)
+    if abs(np.linalg.norm(out) - 1) > 1e-6:
+        raise ValueError(f"{name} must be a unit vector, not {out.tolist()}")
+    return out
+
+
+def _check_axis(machine: str, stock: Volume, axis: NDArray[np.float64], name: str) -> None:
+    if machine == "3-axis" and tuple(axis) != UPRIGHT:
+        raise ValueError(
+            f"{name} {axis.tolist()}: machine 3-axis holds the tool along z; turn part and stock so that the "
+            f"{name} is (0, 0, 1), or name a machine with rotary axes"
+        )
     if len(stock.directions) == 1 and abs(axis["xyz".index(stock.directions)]) < 1 - 1e-9:
         raise ValueError(
-            f"stock: its rays run along {stock.directions}, the axis is {axis.tolist()}; make it with directions 'xyz'"
+            f"stock: its rays run along {stock.directions}, the {name} is {axis.tolist()}; make it with directions "
+            "'xyz'"
         )
+
+
+def _check_stock(part: Mesh, stock: Volume) -> None:
     if not len(part.triangles):
         raise ValueError("part: it has no triangles")
     (lower, upper), (low, high) = part.bounds, (stock.lower, stock.upper)
@@ -175,106 +221,3 @@ def _check_stock(part: Mesh, stock: Volume, axis: NDArray[np.float64]) -> None:
                 f"stock: smaller than the part, {name} from {low[k]:g} to {high[k]:g} mm, and the part from "
                 f"{lower[k]:g} to {upper[k]:g} mm"
             )
-
-
-@hinted("plan.program")
-def program(
-    setup: Setup,
-    operations: Iterable[Operation],
-    *,
-    numbers: Sequence[int] | None = None,
-    progress: Progress = None,
-) -> Program:
-    """One program of several operations, with tool changes between them on the clearance plane.
-
-    The program is simulated on the stock before its first operation. A fault is an error, and no program
-    is returned: a rapid that meets material, shank or holder in stock, the tool in a fixture, a gouge beyond the
-    tolerance of the operations.
-
-    Parameters
-    ----------
-    setup : Setup
-        The set-up of the operations.
-    operations : list of Operation
-        In the order in which they run. Those without poses are left out.
-    numbers : list of int, optional
-        The machine's number of each operation's tool; by default tools are numbered from 1 in order of use.
-    progress : callable, optional
-        Called with the finished share; returning False cancels.
-
-    Returns
-    -------
-    Program
-        Its zero is the set-up's ``origin``.
-
-    Raises
-    ------
-    ValueError
-        Naming the operation, its row and the place of the first collision, or that no operation has poses.
-
-    Examples
-    --------
-    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
-    >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
-    >>> op = riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.1, feed=800)
-    >>> program = riffler.plan.program(setup, [op])
-    >>> len(program) == len(op)
-    True
-    """
-    planned = list(operations)
-    chosen = [op for op in planned if len(op)]
-    if not chosen:
-        reasons = "; ".join(op.reason for op in planned if op.reason)
-        raise ValueError("operations: none has poses" + (f": {reasons}" if reasons else ""))
-    tools: dict[int, Tool] = {}
-    called = _called(planned, numbers, tools)
-    poses = np.concatenate([op.poses for op in chosen])
-    rest = {
-        "rapid": np.concatenate([op.kind == RAPID for op in chosen]),
-        "tool": np.concatenate([np.full(len(op), n) for op, n in zip(chosen, called, strict=True)]),
-        "spindle": np.concatenate([np.full(len(op), op.spindle) for op in chosen]),
-        "tools": tools,
-    }
-    feed = np.concatenate([op.feed for op in chosen])
-    tolerance = max(op.tolerance for op in chosen)
-    report = _core.verify(
-        Program(poses, feed, **rest),
-        setup.stock_before(chosen[0]),
-        setup.part,
-        setup.obstacles,
-        tolerance=tolerance,
-        gouge_tolerance=tolerance + ROUNDING,
-        progress=progress,
-    )
-    if report.findings:
-        first = report.findings[0]
-        ends = np.cumsum([len(op) for op in chosen])
-        index = int(np.searchsorted(ends, first.row, side="right"))
-        row = first.row - (int(ends[index - 1]) if index else 0)
-        at = ", ".join(f"{x:.3f}" for x in first.point)
-        raise ValueError(f"operations[{planned.index(chosen[index])}], row {row}, at ({at}): {first.message}")
-    return Program(poses - np.concatenate([setup.origin, np.zeros(3)]), feed, **rest)
-
-
-def _called(planned: Sequence[Operation], numbers: Sequence[int] | None, tools: dict[int, Tool]) -> list[int]:
-    """The tool numbers of the operations that have poses. Adds their tools to ``tools``."""
-    if numbers is None:
-        return [_number(op.tool, tools) for op in planned if len(op)]
-    if len(numbers) != len(planned):
-        raise ValueError(f"numbers: {len(numbers)} for {len(planned)} operations; give one for each")
-    for k, (op, number) in enumerate(zip(planned, numbers, strict=True)):
-        if number < 1:
-            raise ValueError(f"numbers[{k}] must be a tool number from 1, not {number}")
-        if len(op) and tools.setdefault(number, op.tool).to_dict() != op.tool.to_dict():
-            raise ValueError(f"numbers[{k}]: tool {number} has another shape in an operation before")
-    return [number for op, number in zip(planned, numbers, strict=True) if len(op)]
-
-
-def _number(tool: Tool, tools: dict[int, Tool]) -> int:
-    """The number of a tool in the program; equal tools share a number."""
-    form = tool.to_dict()
-    for number, known in tools.items():
-        if known.to_dict() == form:
-            return number
-    tools[len(tools) + 1] = tool
-    return len(tools)

@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "geom/math.hpp"
+#include "plan/finish/region.hpp"
+
+namespace riffler::plan {
+namespace {
+
+/// Whether a point lies inside, by the angle that the curve turns around it.
+bool winds(const std::vector<std::vector<Vec2>>& curves, const Vec2& p) {
+  int inside = 0;
+  for (const auto& curve : curves) {
+    double turn = 0;
+    for (std::size_t k = 0; k < curve.size(); ++k) {
+      const Vec2 a = curve[k] - p, b = curve[(k + 1) % curve.size()] - p;
+      turn += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+    }
+    inside += std::abs(turn) > kPi;
+  }
+  return inside % 2 == 1;
+}
+
+std::vector<Vec2> star(const Vec2& centre, double radius, int corners) {
+  std::vector<Vec2> out;
+  for (int k = 0; k < corners; ++k) {
+    const double r = k % 2 ? radius : 0.4 * radius, t = 2 * kPi * k / corners + 0.1;
+    out.emplace_back(centre.x + r * std::cos(t), centre.y + r * std::sin(t));
+  }
+  return out;
+}
+
+TEST(Region, HoldsThePointsThatAnOddNumberOfCurvesGoAround) {
+  const std::vector<std::vector<Vec2>> curves{star({0, 0}, 10, 3000), star({1, 0}, 3, 14), star({30, 5}, 4, 8)};
+  const Region region(curves);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> x(-12, 36), y(-12, 12);
+  int in = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec2 p(x(random), y(random));
+    const bool expected = winds(curves, p);
+    in += expected;
+    EXPECT_EQ(region.holds(p), expected) << p.x << ' ' << p.y;
+  }
+  EXPECT_GT(in, 100);
+}
+
+TEST(Region, OfNoCurvesIsEmptyAndOneOfALevelLineHoldsNothing) {
+  EXPECT_TRUE(Region({}).empty());
+  const Region line({{{0, 1}, {5, 1}, {9, 1}}});
+  EXPECT_FALSE(line.empty());
+  EXPECT_FALSE(line.holds({3, 1}));
+}
+
+}  // namespace
+}  // namespace riffler::plan
