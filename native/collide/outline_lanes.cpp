@@ -28,8 +28,8 @@ void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, 
   }
 }
 
-EdgeSet CentreDistancesAndEdges(std::span<const LaneEdge> outline, const ToolFrame& frame,
-                                const SphereGroup& spheres, double* distance) {
+EdgeSet CentreDistancesAndEdges(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
+                                double* distance) {
   alignas(64) double squares[kEdgeBits][base::kLanes];
   const std::size_t edges = std::min(outline.size(), kEdgeBits);
   EdgeSet out = 0;
@@ -53,8 +53,7 @@ EdgeSet CentreDistancesAndEdges(std::span<const LaneEdge> outline, const ToolFra
     for (std::size_t i = 0; i < edges; ++i) {
       const LaneEdge& e = outline[i];
       M decides = hn::Le(hn::Load(kD, squares[i] + k), square);
-      if (e.arc || e.rises)
-        decides = either(decides, both(hn::Ge(high, set(e.from[1])), hn::Le(low, set(e.to[1]))));
+      if (e.arc || e.rises) decides = either(decides, both(hn::Ge(high, set(e.from[1])), hn::Le(low, set(e.to[1]))));
       if (!none(both(reaches, decides))) out |= EdgeSet{1} << i;
     }
   }
