@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -96,6 +97,39 @@ def test_step_files_are_exact(files, name, distance):
     if distance is not None:  # normals point out of the solid
         sign = np.sign(np.einsum("ij,ij->i", points - feet, normals))
         assert (sign == np.sign(distance(points)))[expected > 1e-3].all()
+
+
+def test_a_session_stops_at_an_exact_surface():
+    """The hand goes 2 mm below a plate with a round border, then beyond the border, where nothing is."""
+    part, stock = riffler.Collider(plate([circle(0.3, 400)])), riffler.Volume.block((0, 0, -30), (20, 20, -20), 1.0)
+    options = {"obstacles": part, "at": (10, 10, 3, 0, 0, 1), "dead_man_mask": 0}
+    with (
+        riffler.pen.open("simulated") as pen,
+        riffler.Session(stock, riffler.Tool.ball(4, 20), pen, **options) as session,
+    ):
+        end = time.monotonic() + 60
+        while not pen.state().homed:
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        home = np.array(pen.state().pose)
+
+        def led(*way):
+            """Height of the tip and size of the force, mean of a tenth of a second, once the tool rests."""
+            pen.aim(home + np.array([*way, 0, 0, 0]))
+            heights, forces = [], []
+            while len(heights) < 100 or np.ptp(heights[-5:]) > 0.01 or len(forces) < 5:
+                assert time.monotonic() < end
+                time.sleep(0.02)
+                frame = session.frame()
+                if len(frame) and frame.tool is not None:
+                    heights.append(frame.tool[2])
+                    forces.append(np.linalg.norm(frame.force))
+            return np.mean(heights[-5:]), np.mean(forces[-5:])
+
+        height, force = led(0, 0, -5)
+        assert -1 < height < 0 and force > 0.2
+        height, force = led(9, 0, -5)
+        assert height < -1.5 and force < 0.2
 
 
 @needs_occ
