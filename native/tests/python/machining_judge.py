@@ -55,6 +55,20 @@ def distances(points, part):
     return out
 
 
+def windings(points, part):
+    """How often the surface of a part surrounds points: 1 inside a closed part, 0 outside, by the sum of the solid
+    angles of its triangles (Van Oosterom and Strackee 1983)."""
+    corners = np.asarray(part.vertices)[np.asarray(part.triangles)]
+    out = np.empty(len(points))
+    for k, p in enumerate(points):
+        a, b, c = (corners[:, i] - p for i in range(3))
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        high = (a * np.cross(b, c)).sum(axis=1)
+        low = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
+        out[k] = np.arctan2(high, low).sum() / (2 * np.pi)
+    return out
+
+
 class HeightMap:
     """Heights of a stock over small cells, cut by all moves of operations in order."""
 
@@ -105,7 +119,7 @@ class PartJudge:
     SUSPECTS = 150  # places whose distance from the part is measured
 
     def __init__(self, part, random, count=1500):
-        self.part = part
+        self.part, self.closed = part, part.audit().open_edges == 0
         lower, upper = (np.array(corner) for corner in part.bounds)
         self.places = random.uniform(lower[:2], upper[:2], (count, 2))
         self.points, self.normals, _ = surface_samples(part, count, int(random.integers(1 << 30)))
@@ -123,7 +137,10 @@ class PartJudge:
         chosen = np.concatenate([suspect, beside]).astype(int)
         points = np.column_stack([at, low])[chosen]
         away = distances(points, self.part)
-        depth = np.where(low[chosen] < over[chosen], allowance + away, allowance - away)
+        below = low[chosen] < over[chosen]
+        if self.closed and below.any():  # a cutter may enter a thin overhang within its tolerance, and the void below
+            below[below] = windings(points[below], self.part) > 0.5
+        depth = np.where(below, allowance + away, allowance - away)
         return [(p, d) for p, d in zip(points, depth, strict=True) if d > tolerance + ROUNDING]
 
 
