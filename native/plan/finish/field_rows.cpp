@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kMostHalves = 10;
 constexpr int kBorderHalves = 6;
-constexpr int kNear = 2;  // radius, in places, of the neighbourhood of a place where too much material stays
+constexpr double kStep = 2;  // rise between two places, in their distance, from which there may be a step
+constexpr int kNear = 2;     // radius, in places, of the neighbourhood of a place where too much material stays
 
 /// A point to be cut: at a place, or between two places where a border of the selected faces runs.
 struct Sample {
@@ -191,6 +192,18 @@ class Fields {
     return outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance > cusp_ + field_.lift;
   }
 
+  /// Whether too much material stays at the foot of a wall that begins within a band and rises above it: no row is
+  /// below the foot.
+  bool stands_at_foot(const Band& band, std::size_t a, std::size_t b) const {
+    if (!field_.foot) return false;
+    const auto [least, most] = std::minmax(field_.values[a], field_.values[b]);
+    const double step = kStep * field_.grid.spacing;  // the floor may be lower at the place than at the wall
+    if (!(least >= band.low - step && least < band.high && most >= band.high && most - least >= step)) return false;
+    base::still_wanted();
+    const std::optional<SurfacePoint> p = field_.foot(a, b, band.high);
+    return p && p->tip.z >= band.low && meant(*p) && stands(*p, false);
+  }
+
   /// The places near those of a band where too much material stays; empty if there are none.
   PlaceSet open_places(const Band& band) const {
     std::vector<std::size_t> open;
@@ -198,6 +211,7 @@ class Fields {
       if (stands(samples_[i].at, false)) open.push_back(samples_[i].place);
     for (const std::size_t edge : band.edges) {
       const std::size_t a = edge / 2, b = other(edge);
+      if (stands_at_foot(band, a, b)) open.push_back(a), open.push_back(b);
       if ((field_.values[a] < band.middle()) == (field_.values[b] < band.middle())) continue;
       base::still_wanted();
       const std::optional<SurfacePoint> p = field_.between(a, b, band.middle());

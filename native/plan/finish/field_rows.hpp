@@ -23,6 +23,9 @@ struct RowField {
   std::function<std::vector<CutPiece>(double value, const PlaceSet* near, std::vector<BlockedPlace>& blocked)> row;
   /// Finds the surface's point between two neighbouring places at which the field has a value; none at a step.
   std::function<std::optional<SurfacePoint>(std::size_t a, std::size_t b, double value)> between;
+  /// Finds the lowest point at which the cutter touches a wall between two neighbouring places that reaches a value;
+  /// none if there is no step. May be empty.
+  std::function<std::optional<SurfacePoint>(std::size_t a, std::size_t b, double value)> foot = {};
 };
 
 /// Makes the rows of `first`, then halves the interval between two rows as long as ridges between them are higher than

@@ -174,6 +174,14 @@ void LevelCurves::refine(const Vec2& a, const Vec2& b, double z, std::vector<Vec
   }
 }
 
+std::optional<SurfacePoint> LevelCurves::at_wall(const Vec2& p, double z) const {
+  const double near = 2 * tolerance_;
+  const SteepFaces::Found wall =
+      walls_.nearest(Vec3(p, z + middle_), reach_ * (1 + kWallSlack) + near, near + scene_.options.allowance, near);
+  if (wall.triangle < 0) return {};
+  return SurfacePoint{Vec3(p, z), {true, z, wall.point, tool::Part::Cutter, wall.triangle}};
+}
+
 LevelCurves::Touch LevelCurves::touch(const Vec2& p, const Vec2& right, double z) const {
   SurfacePoint s{Vec3(p, z), outer_(Vec3(p, 0))};
   scene_.surface.count_drop();
@@ -185,15 +193,14 @@ LevelCurves::Touch LevelCurves::touch(const Vec2& p, const Vec2& right, double z
   }
   // A step of the surface, or a floor next to a step: the cutter touches an upright wall with its full radius, or
   // nothing.
-  const SteepFaces::Found wall = walls_.nearest(Vec3(p, z + middle_), reach_ * (1 + kWallSlack) + 2 * tolerance_,
-                                                2 * tolerance_ + scene_.options.allowance);
-  if (wall.triangle < 0) {
+  const std::optional<SurfacePoint> wall = at_wall(p, z);
+  if (!wall) {
     s.landing = outer_(Vec3(p + 2 * kPrecision * tolerance_ * right, 0));
     return {false, s.landing.height > z ? scene_.surface.blocked(s) : nullptr};
   }
-  s.landing = {true, z, wall.point, tool::Part::Cutter, wall.triangle};
-  if (const char* reason = scene_.surface.blocked(s)) return {false, reason};
-  return {scene_.surface.wanted_face(wall.triangle, wall.point, scene_.surface.face_slope(wall.triangle))};
+  if (const char* reason = scene_.surface.blocked(*wall)) return {false, reason};
+  const int face = wall->landing.triangle;
+  return {scene_.surface.wanted_face(face, wall->landing.point, scene_.surface.face_slope(face))};
 }
 
 /// The curve's point near `p`, on the line through `p` across the curve; `p` itself if there is none.

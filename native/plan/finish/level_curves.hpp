@@ -36,6 +36,10 @@ class LevelCurves {
   /// lower side, within the precision.
   Vec2 border(Vec2 low, Vec2 high, double z) const;
 
+  /// The cutter with its tip at `p` and `z` if it touches an upright wall there with its full radius; its landing is
+  /// there.
+  std::optional<SurfacePoint> at_wall(const Vec2& p, double z) const;
+
   /// The pieces of the curves at height `z` that touch selected faces; with `near`, only those near its places.
   std::vector<LevelPiece> at(double z, const PlaceSet* near, std::vector<BlockedPlace>& blocked) const;
 

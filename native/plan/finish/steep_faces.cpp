@@ -45,7 +45,7 @@ SteepFaces::SteepFaces(const Mesh& mesh) {
   });
 }
 
-SteepFaces::Found SteepFaces::nearest(const Vec3& p, double reach, double slack) const {
+SteepFaces::Found SteepFaces::nearest(const Vec3& p, double reach, double slack, double band) const {
   Found out;
   if (triangles_.empty()) return out;
   double least = reach;
@@ -64,11 +64,9 @@ SteepFaces::Found SteepFaces::nearest(const Vec3& p, double reach, double slack)
     std::size_t count = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 &a = v[i], &b = v[(i + 1) % 3];
-      if (std::min(a.z, b.z) > z || std::max(a.z, b.z) < z) continue;
-      if (a.z == b.z)
-        section[count++] = Vec2(a), section[count++] = Vec2(b);
-      else
-        section[count++] = Vec2(glm::mix(a, b, std::clamp((z - a.z) / (b.z - a.z), 0.0, 1.0)));
+      if (std::min(a.z, b.z) > z + band || std::max(a.z, b.z) < z - band) continue;
+      for (const double end : {z - band, z + band})
+        section[count++] = Vec2(glm::mix(a, b, a.z == b.z ? end > z : std::clamp((end - a.z) / (b.z - a.z), 0.0, 1.0)));
     }
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = i; j < count; ++j) {

@@ -21,8 +21,9 @@ class SteepFaces {
   explicit SteepFaces(const Mesh& mesh);
 
   /// Finds the face whose section at the height of `p` is nearest to `p`, within `reach` (mm). A face that ends at most
-  /// `slack` (mm) above or below `p` counts with the section at its end.
-  Found nearest(const Vec3& p, double reach, double slack) const;
+  /// `slack` (mm) above or below `p` counts with the section at its end. The section is the strip at most `band` (mm)
+  /// above and below that height: at an edge that is not quite level, a face has a section without it at one end only.
+  Found nearest(const Vec3& p, double reach, double slack, double band) const;
 
  private:
   struct Triangle {

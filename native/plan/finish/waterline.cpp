@@ -154,6 +154,16 @@ PatternRows waterline_rows(const PatternScene& scene, const Progress& progress) 
     if (!found.landing.touches || std::abs(found.tip.z - z) > 8 * tolerance) return {};
     return found;
   };
+  const auto foot = [&](std::size_t a, std::size_t b, double z) -> std::optional<SurfacePoint> {
+    if (curves.heights()[a] > z) std::swap(a, b);
+    const Vec2 low = curves.grid().place(a), p = curves.border(low, curves.grid().place(b), z);
+    // A wall that leans by 0.001 rad is no step at its border: the floor is a little farther out.
+    const double far = geom::hypot(low.x - p.x, low.y - p.y);
+    const Vec2 out = far > tolerance ? p + tolerance / far * (low - p) : low;
+    const double floor = std::max(curves.height(out), scene.part.lower.z);
+    if (floor >= z - 8 * tolerance) return {};
+    return curves.at_wall(p, floor);
+  };
   const std::vector<double> levels = first_levels(special_levels(scene, curves, kOver * tolerance),
                                                   scene.profile.spacing(kCuspShare * scene.options.cusp));
   const RowField field{curves.grid(),
@@ -165,7 +175,8 @@ PatternRows waterline_rows(const PatternScene& scene, const Progress& progress) 
                        0.5 * tolerance,
                        scene.options.min_slope < kLeastSlope ? kFlat : nullptr,
                        row,
-                       between};
+                       between,
+                       foot};
   PatternRows out = field_rows(scene, field, base::part(progress, (kFiner + 1) * kGridShare, 1));
   if (!unseen.empty()) add_blocked({{kNarrow, unseen.front(), 0}}, out.blocked);
   out.descending = true;

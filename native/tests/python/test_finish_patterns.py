@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 import riffler
-from finish_judge import PARTS, Judge, boss_on_plate, cone, dome, setup_of, steps, z_map
+from finish_judge import PARTS, Judge, boss_on_plate, cone, dome, setup_of, solid_under, steps, z_map
 from riffler import plan
 
 MODELS = os.path.join(os.path.dirname(__file__), *[".."] * 4, "shared", "models")
@@ -128,6 +128,25 @@ def test_waterline_reaches_the_floor_and_the_lowest_wall():
     for floor, radius in ((0.0, 14.0), (3.0, 9.0), (7.0, 5.0)):
         wall = np.abs(from_middle - radius - 2) < 0.1
         assert abs(cuts[wall][:, 2].min() - floor) <= TOLERANCE
+
+
+def test_waterline_follows_walls_whose_lower_edge_is_almost_level():
+    """In meshes of dexels, and in single precision, an edge at the lowest level has an end a rounding error higher."""
+    part = solid_under(np.array([0.0, 24.0]), np.full((2, 2), 4.0))
+    points = np.array(part.vertices)
+    points[points[:, 2] == 0, 2] += [0.0, 1e-9, 0.0, 1e-7]
+    part = riffler.Mesh(points, part.triangles)
+    op = finished(part, FLAT, "waterline", degrees(25, 90))
+    assert_kept(op, Judge(part, FLAT, 0.0, degrees(25, 90), count=800))
+
+
+@pytest.mark.parametrize("floor", [4.3, 4.9])
+def test_waterline_cuts_down_to_a_floor_between_two_levels(floor):
+    """Walls that lean by 0.001, as of castings, over a floor that falls by 11 degrees: no level is at their foot."""
+    profile = np.array([floor + 6, floor + 6, floor, floor - 3])
+    part = solid_under(np.array([0.0, 10.0, 10.006, 25.0]), profile[:, None] * np.ones(4))
+    op = finished(part, BALL, "waterline", degrees(30, 90), cusp=0.2, tolerance=0.05)
+    assert_kept(op, Judge(part, BALL, 0.0, degrees(30, 90), count=1500), cusp=0.2, tolerance=0.05)
 
 
 def test_waterline_climbs_or_not():
@@ -293,5 +312,4 @@ def test_real_models_are_cut_to_the_cusp_and_no_deeper(name, pattern, slopes):
         judge.points, judge.normals, judge.reachable = (
             x[judge.reachable] for x in (judge.points, judge.normals, judge.reachable)
         )
-    # A known fault: levels leave 0.5 % of the samples on upright walls of ktoolcor too high.
-    assert_kept(op, judge, least=15, cusp=0.2, tolerance=0.05, share=SELDOM if pattern == "waterline" else 0.0)
+    assert_kept(op, judge, least=15, cusp=0.2, tolerance=0.05)
