@@ -20,7 +20,7 @@ setup:  ## Install what is needed, make .venv, build riffler into it
 envs:  ## Make an environment for every Blender that the tests use: .envs
 	@$(ready) test
 
-demo:  ## Carve the demo figure, write STL and NC code, render it: out/demo
+demo:  ## Carve the demo figure, mill a bust of it, write STL and NC code, render both: out/demo
 	@$(ready) demo
 	$(python) demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from rich.console import Console
 from rich.table import Table
 from riffler import Audit
+from riffler.job import Result
 
 
 @dataclass
@@ -33,9 +34,22 @@ def describe_audit(audit: Audit) -> str:
     return ", ".join(wrong) if wrong else f"all {len(defects(audit))} counts 0"
 
 
+def show_operations(result: Result) -> None:
+    """The operations of a job: lengths, volumes and times."""
+    table = Table(title="Operations of the bust", title_justify="left")
+    table.add_column("operation")
+    for column in ("tool", "cut, m", "removed, mm³", "on the machine, min", "computed in, s"):
+        table.add_column(column, justify="right")
+    for done in result.operations:
+        of = done.operation.report
+        table.add_row(done.job.name, done.job.tool.name, f"{of.cut_mm / 1e3:.1f}", f"{done.removed:,.0f}",
+                      f"{of.time_s / 60:.1f}", f"{done.seconds:.1f}")  # fmt: skip
+    Console().print(table)
+
+
 def show(pieces: list[Piece], stages: list[tuple[str, float]], files: list[tuple[str, int]]) -> None:
     console = Console()
-    table = Table(title="Recorded strokes, carved and replayed", title_justify="left")
+    table = Table(title="Recorded strokes, carved and replayed, and a bust", title_justify="left")
     table.add_column("")
     for piece in pieces:
         table.add_column(f"{piece.name}\n{piece.tools}", justify="right")

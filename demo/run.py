@@ -1,11 +1,14 @@
-"""The whole workflow once, on real input: Suzanne, recorded pen strokes, STL, NC code, a replay elsewhere, a picture.
+"""The whole workflow once, on real input: Suzanne, recorded pen strokes, STL, NC code, a replay elsewhere, a bust
+milled from a block, pictures.
 
     python demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 
 Suzanne becomes a tri-dexel stock, the strokes in demo/strokes.rjournal engrave her and the force along them is plotted.
 The strokes are written as NC code for a tilting rotary table, LinuxCNC's interpreter and the benchmark's own forward
 kinematics say where that takes the tool, and the code is read back and replayed on another stock with another tool.
-Exits with 1 if a mesh that was read back from its STL is not sound, or the code takes the tool elsewhere.
+Then a job mills Suzanne from a block (demo/milling.py): roughed, finished and pencilled from several sides, in one
+program.
+Exits with 1 if a mesh that was read back from its STL is not sound, or NC code takes the tool elsewhere.
 """
 
 from __future__ import annotations
@@ -26,7 +29,7 @@ sys.path.insert(0, str(ROOT))  # run as a script, not only as `python -m demo.ru
 import riffler  # noqa: E402
 from riffler_bench import nc_judge  # noqa: E402
 
-from demo import egg, forces, report  # noqa: E402
+from demo import egg, forces, milling, report  # noqa: E402
 
 REPLAY_TOOL = riffler.Tool.ball(diameter=3.0, length=10.0)
 POST = "linuxcnc-xyzac"
@@ -44,9 +47,10 @@ class Stages:
 
     @contextmanager
     def __call__(self, name: str):
+        """Yields a callable that shows the finished share, on a terminal."""
         print(f"{name} …", flush=True)
         start = time.perf_counter()
-        yield
+        yield (lambda share: print(f"  {share:4.0%}\r", end="", flush=True)) if sys.stdout.isatty() else None
         self.rows.append((name, time.perf_counter() - start))
 
     @property
@@ -178,6 +182,7 @@ def main() -> int:
     out, stages = options.out, Stages()
     out.mkdir(parents=True, exist_ok=True)
     head, other = report.Piece("Suzanne", "recorded tools"), report.Piece("Egg", f"replayed, {REPLAY_TOOL.name}")
+    bust = report.Piece("Bust", "milled from a block")
 
     with stages("Suzanne from Blender"):
         blender(options.blender_python, "suzanne.py", out / "suzanne.stl")
@@ -199,7 +204,7 @@ def main() -> int:
         recorded = journal.program(spindle=12000.0)
         written = recorded.write(out / "strokes.ngc", post=POST, tolerance=TOLERANCE, options=TABLE)
         program = riffler.Program.read(out / "strokes.ngc", machine=POST, options=TABLE)
-    other.note("NC blocks", f"{written['blocks']:,} for {len(recorded):,} rows")
+    other.note("NC blocks", f"{written.blocks:,} for {len(recorded):,} rows")
     with stages("NC code judged by LinuxCNC's interpreter"):
         judge(recorded, out / "strokes.ngc", other)
     with stages("Egg: mesh to volume"):
@@ -213,10 +218,20 @@ def main() -> int:
         scene = (out / "suzanne-carved.stl", out / "egg-carved.stl", out / "riffler.blend", out / "riffler.png")
         blender(options.blender_python, "scene.py", *scene, "--samples", options.samples)
 
+    job, result = milling.run(figure, out, stages)
+    with stages("Bust: NC code judged by LinuxCNC's interpreter"):
+        milling.judge(job, result, bust)
+    with stages("Bust: scene and render"):
+        shown = (out / "suzanne-carved.stl", out / "bust-roughed.stl", out / "bust-milled.stl")
+        blender(options.blender_python, "scene_milled.py", *shown, out / "milled.blend", out / "milled.png",
+                "--samples", max(1, options.samples // 2))  # fmt: skip
+
     names = ("suzanne.stl", "suzanne-carved.stl", "egg-carved.stl", "strokes.rjournal", "strokes.ngc", "force.png")
-    files = [out / name for name in (*names, "riffler.blend", "riffler.png")]
-    report.show([head, other], stages.rows, [(str(path), path.stat().st_size) for path in files])
-    return 0 if head.sound and other.sound else 1
+    milled = ("bust-milled.stl", "bust.ngc", "bust.html", "milled.blend", "milled.png")
+    files = [out / name for name in (*names, "riffler.blend", "riffler.png", *milled)]
+    report.show_operations(result)
+    report.show([head, other, bust], stages.rows, [(str(path), path.stat().st_size) for path in files])
+    return 0 if head.sound and other.sound and bust.sound else 1
 
 
 if __name__ == "__main__":

@@ -189,8 +189,13 @@ def main() -> None:
     carved(options.egg, "Egg", EGG_AT, 24.0, -12.0, bone)
     stand(HEAD_AT + Vector((0, 3, 0)), -10.0, wood, brass)
     stand(EGG_AT + Vector((2, 16, 0)), -30.0, wood, brass)
-    backdrop(plain_material("Paper", (0.10, 0.125, 0.14), 0.7))
+    studio(scene, (0.0, -430.0, 235.0), (-3.5, 0.0, -10.5), 77.0)
+    finish(scene, options)
 
+
+def studio(scene, camera_at: tuple, target: tuple, lens: float) -> None:
+    """Backdrop, lights and camera."""
+    backdrop(plain_material("Paper", (0.10, 0.125, 0.14), 0.7))
     light("Key", (-210.0, -170.0, 250.0), Vector((0, 0, 10)), 110.0, 1.35e6, (1.0, 0.93, 0.84))
     light("Rim", (230.0, 190.0, 190.0), Vector((0, 0, 10)), 130.0, 0.8e6, (0.80, 0.89, 1.0))
     light("Fill", (190.0, -330.0, 60.0), Vector((0, 0, 0)), 260.0, 0.2e6, (0.9, 0.95, 1.0))
@@ -199,10 +204,13 @@ def main() -> None:
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.20, 0.22, 0.25, 1.0)
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.35
-    camera((0.0, -430.0, 235.0), (-3.5, 0.0, -10.5), 77.0)
+    camera(camera_at, target, lens)
+
+
+def finish(scene, options: argparse.Namespace) -> None:
+    """Saves the scene as `options.blend` and renders it to `options.picture`."""
     render_settings(scene, options.samples, options.threads)
     scene.render.resolution_percentage = options.percent
-
     options.blend.parent.mkdir(parents=True, exist_ok=True)
     bpy.context.preferences.filepaths.save_version = 0  # no riffler.blend1 of an earlier run
     bpy.ops.wm.save_as_mainfile(filepath=str(options.blend.resolve()), compress=True)
