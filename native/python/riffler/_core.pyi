@@ -6762,7 +6762,7 @@ def require_revolved(tool: Tool, who: str) -> None:
     """
     ValueError for a hand tool, which ``who`` cannot use.
     """
-def rough(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, stepdown: typing.SupportsFloat, engagement: typing.SupportsFloat, allowance: typing.SupportsFloat, tolerance: typing.SupportsFloat, slope: typing.SupportsFloat, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+def rough(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, stepdown: typing.SupportsFloat, engagement: typing.SupportsFloat, allowance: typing.SupportsFloat, tolerance: typing.SupportsFloat, slope: typing.SupportsFloat, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, depth: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
     """
     For riffler.plan.rough.
     """

@@ -214,6 +214,7 @@ def _left_by(tool: Tool, setup: Setup, above: float, allowance: float) -> Volume
         climb=True,
         feed=1.0,
         plunge=1.0,
+        lead=0.0,
         progress=None,
     )
     if len(done.poses):
