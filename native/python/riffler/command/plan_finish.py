@@ -36,19 +36,15 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_argument("--angle", metavar="DEG", default="0", help="angle of the rows (default 0)")
     parser.add_argument(
-        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
+        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces, from level (default 0,90)"
     )
     parser.add_argument(
         "--centre", metavar="X,Y,Z", help="centre of a spiral or of rays (default the middle of the part's box)"
     )
-    parser.add_argument(
-        "--conventional", action="store_true", help="waterlines with the part to the left of the motion, not climb"
-    )
+    parser.add_argument("--conventional", action="store_true", help="waterlines with the part to the left")
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_lead(parser)
-    parser.add_argument(
-        "--rest", metavar="MM", help="finish only where more material than this stands, as with a .rvol"
-    )
+    parser.add_argument("--rest", metavar="MM", help="finish only where more than this stands")
     add_scene(parser, "1000")
 
 

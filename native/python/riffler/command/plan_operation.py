@@ -34,9 +34,7 @@ def add_lengths(parser: Parser, *lengths: tuple[str, str, str]) -> None:
 
 
 def add_lead(parser: Parser) -> None:
-    parser.add_argument(
-        "--lead", metavar="MM", help="radius of arcs into cuts and out of them (default half the cutter's radius)"
-    )
+    parser.add_argument("--lead", metavar="MM", help="radius of arcs at ends (default half the cutter's)")
 
 
 def lead_of(arguments: argparse.Namespace) -> float | None:
