@@ -31,20 +31,22 @@ def add_arguments(parser: Parser) -> None:
     add_lengths(
         parser,
         ("--cusp", "0.01", "largest height of ridges between rows"),
-        ("--tolerance", "0.005", "largest error of the rows, above and below part and allowance"),
+        ("--tolerance", "0.005", "largest error of the rows, above and below"),
         ("--allowance", "0", "material to leave on the part"),
     )
     parser.add_argument("--angle", metavar="DEG", default="0", help="angle of the rows (default 0)")
     parser.add_argument(
-        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces, from level (default 0,90)"
+        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
     )
     parser.add_argument(
         "--centre", metavar="X,Y,Z", help="centre of a spiral or of rays (default the middle of the part's box)"
     )
-    parser.add_argument("--conventional", action="store_true", help="waterlines with the part to the left")
+    parser.add_argument(
+        "--conventional", action="store_true", help="waterlines with the part to the left of the motion, not climb"
+    )
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_lead(parser)
-    parser.add_argument("--rest", metavar="MM", help="finish only where more than this stands")
+    parser.add_argument("--rest", metavar="MM", help="finish only where more material than this stands")
     add_scene(parser, "1000")
 
 

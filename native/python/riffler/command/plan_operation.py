@@ -34,7 +34,9 @@ def add_lengths(parser: Parser, *lengths: tuple[str, str, str]) -> None:
 
 
 def add_lead(parser: Parser) -> None:
-    parser.add_argument("--lead", metavar="MM", help="radius of arcs at ends (default half the cutter's)")
+    parser.add_argument(
+        "--lead", metavar="MM", help="radius of arcs into cuts and out of them (default half the cutter's radius)"
+    )
 
 
 def lead_of(arguments: argparse.Namespace) -> float | None:
@@ -53,7 +55,7 @@ def add_scene(parser: Parser, feed: str) -> None:
     parser.add_argument(
         "--orientation",
         metavar="X,Y,Z",
-        help="direction from tip to spindle (default 0,0,1); needs --post with rotary axes",
+        help="direction from tip to spindle (default 0,0,1), with rotary axes",
     )
     parser.add_argument("--zero", metavar="X,Y,Z", help="zero point of the program (default 0,0,0)")
     add_fixtures(parser)
