@@ -12,7 +12,7 @@ RADIUS, TOP = 7.0, 14.0
 volume = riffler.Volume.block((0, 0, 0), (128, 40, 26), pitch=0.25, directions="xyz")
 volume.carve(riffler.Tool.flat(400, 60), [(x, 20, TOP, 0, 0, 1) for x in (60, 61)])  # room for what is added
 groove = riffler.Tool.ball(2, 30)
-for y in np.arange(4, 38, 4.0):  # so that one sees where the surface goes
+for y in range(4, 38, 4):  # so that one sees where the surface goes
     volume.carve(groove, [(-3, y, TOP - 0.5, 0, 0, 1), (131, y, TOP - 0.5, 0, 0, 1)])
 start = volume.volume
 
@@ -49,5 +49,5 @@ view = View(volume.to_mesh(), azimuth=-84, elevation=44)
 view.show(ax)
 for name, x in zip(made, (10, 28, 46, 64, 82, 100, 118), strict=True):
     place, _ = view.project([(x, -4, 0)])
-    ax.text(*(place[0] - (0, 5)), name, ha="center", color=INK)
+    ax.text(place[0][0], place[0][1] - 5, name, ha="center", color=INK)
 save(figure, "brushes.png")
