@@ -40,7 +40,7 @@ PATHS = [*(str(Path(p.__file__).parents[1]) for p in (riffler, riffler_bench)), 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 PLOTS = {
     *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "rendered", "session", "force", "pitch", "mesh"),
-    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc", "verify"),
+    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc", "verify", "surfaces"),
 }
 ROOT = Path(__file__).resolve().parents[3]
 BPY = ROOT / ".envs" / "bpy-4.5" / "bin" / "python"
@@ -467,6 +467,13 @@ def test_a_busy_machine_is_measured_with_and_without_real_time(quick):
         assert row["count"] > 10
         assert row["p50_s"] <= row["p99_s"] <= row["p999_s"] <= row["max_s"]
         assert row["late_p50_s"] <= row["late_p99_s"] <= row["late_p999_s"] <= row["late_max_s"]
+
+
+def test_exact_surfaces_are_compared_with_tessellations(quick):
+    exact, *flat = rows(quick, "surfaces", "torus")
+    assert exact["depth_mm"] < 1e-6 and exact["cl_mm"] < 1e-6 and exact["ripple"] < 1e-3
+    assert [row["depth_mm"] <= row["tolerance"] for row in flat] == [True] * len(flat) and len(flat) >= 2
+    assert all(row["ripple"] > 10 * exact["ripple"] for row in flat)
 
 
 def test_plots_are_drawn_from_the_figures(quick):
