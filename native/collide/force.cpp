@@ -37,7 +37,7 @@ class ForceSum {
     contact_.points.reserve(kUsual), contact_.touches.reserve(kUsual);
     if (points_.tree().holds_items(0)) {
       take(0, 1, found_[0]);
-      add_items({found_.data(), 1}, kAllEdges, counts);
+      add_items({found_.data(), 1}, counts);
     } else {
       open(0, 1, counts);
     }
@@ -89,8 +89,8 @@ class ForceSum {
   }
 
   /// All items of the nodes that are left of a group.
-  void add_items(std::span<PointGroup> groups, EdgeSet edges, Counts& counts) {
-    add_points(assembly_.lane_edges(), edges, frame_, groups, ramp_, sums_);
+  void add_items(std::span<PointGroup> groups, Counts& counts) {
+    add_points(assembly_.lane_edges(), frame_, groups, ramp_, sums_);
     counts.points += groups.size() * base::kLanes;
     for (const PointGroup& g : groups)
       for (unsigned left = g.inside; left != 0; left &= left - 1) {
@@ -107,14 +107,10 @@ class ForceSum {
     const SphereTree& tree = points_.tree();
     const SphereGroup& spheres = tree.group(group);
     double distance[base::kLanes];
+    centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
+    counts.nodes += base::kLanes;
     const std::size_t first = tree.first_child(group);
     const bool above_items = tree.holds_items(first);
-    EdgeSet edges = kAllEdges;
-    if (above_items)
-      edges = centre_distances_and_edges(assembly_.lane_edges(), frame_, spheres, distance);
-    else
-      centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
-    counts.nodes += base::kLanes;
     std::size_t found = 0;
     for (int k = 0; k < base::kLanes; ++k) {
       if (!(distance[k] < spheres.radius[k])) continue;
@@ -128,7 +124,7 @@ class ForceSum {
       else
         stack_.push_back({group, k, distance[k], weight - coarse});
     }
-    if (found > 0) add_items({found_.data(), found}, edges, counts);
+    if (found > 0) add_items({found_.data(), found}, counts);
   }
 
   const Assembly& assembly_;

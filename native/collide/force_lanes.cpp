@@ -30,14 +30,12 @@ struct Arms {
         z(sub(hn::Load(kD, points.z + k), set(frame.tip.z))) {}
 };
 
-HWY_INLINE void find_inside(std::span<const LaneEdge> outline, EdgeSet edges, const ToolFrame& frame,
-                            PointGroup& group) {
+HWY_INLINE void find_inside(std::span<const LaneEdge> outline, const ToolFrame& frame, PointGroup& group) {
   group.inside = 0;
   for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, *group.points, k);
     Points place(at.rho, at.z);
-    for (std::size_t i = 0; i < outline.size(); ++i)
-      if (holds(edges, i)) outline[i].arc ? place.add_arc(outline[i]) : place.add_line(outline[i]);
+    for (const LaneEdge& e : outline) e.arc ? place.add_arc(e) : place.add_line(e);
     const M in =
         both(both(place.inside, hn::Gt(place.square, zero())), hn::Ge(hn::Load(kD, group.points->radius + k), zero()));
     group.inside |= bits(in) << k;
@@ -70,10 +68,10 @@ HWY_INLINE void add_force(const Arms& at, M in, V depth, V stiffness, const V (&
 
 }  // namespace
 
-void AddPoints(std::span<const LaneEdge> outline, EdgeSet edges, const ToolFrame& frame, std::span<PointGroup> groups,
+void AddPoints(std::span<const LaneEdge> outline, const ToolFrame& frame, std::span<PointGroup> groups,
                const StiffnessRamp& ramp, ForceSums& sums) {
   // Groups do not wait for one another's square roots: none is added before all are found.
-  for (PointGroup& group : groups) find_inside(outline, edges, frame, group);
+  for (PointGroup& group : groups) find_inside(outline, frame, group);
   const V per_length = set(1 / ramp.length), top = set(ramp.top);
   for (const PointGroup& group : groups) {
     const V cutter = set(group.weight * ramp.stiffness.cutter);
@@ -100,9 +98,9 @@ namespace riffler::collide {
 
 HWY_EXPORT(AddPoints);
 
-void add_points(std::span<const LaneEdge> outline, EdgeSet edges, const ToolFrame& frame, std::span<PointGroup> groups,
+void add_points(std::span<const LaneEdge> outline, const ToolFrame& frame, std::span<PointGroup> groups,
                 const StiffnessRamp& ramp, ForceSums& sums) {
-  HWY_DYNAMIC_DISPATCH(AddPoints)(outline, edges, frame, groups, ramp, sums);
+  HWY_DYNAMIC_DISPATCH(AddPoints)(outline, frame, groups, ramp, sums);
 }
 
 void ForceSums::add_to(Contact& contact) const {

@@ -47,9 +47,8 @@ struct PointGroup {
   double square[base::kLanes];  ///< mm²: of the depth
 };
 
-/// Adds the points of the groups that lie inside the tool, and fills the groups' results. `edges`: those of the outline
-/// that decide it for all these points.
-void add_points(std::span<const LaneEdge> outline, EdgeSet edges, const ToolFrame& frame, std::span<PointGroup> groups,
+/// Adds the points of the groups that lie inside the tool, and fills the groups' results.
+void add_points(std::span<const LaneEdge> outline, const ToolFrame& frame, std::span<PointGroup> groups,
                 const StiffnessRamp& ramp, ForceSums& sums);
 
 }  // namespace riffler::collide

@@ -1,7 +1,5 @@
 #include "collide/outline_lanes.hpp"
 
-#include <algorithm>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "collide/outline_lanes.cpp"
 // foreach_target.h must stay here; clang-format would sort it.
@@ -16,8 +14,6 @@ namespace riffler::collide::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-constexpr double kRounding = 1e-8;  // mm: more than coordinates of 1e5 mm lose
-
 void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                      double* distance) {
   for (int k = 0; k < base::kLanes; k += lanes()) {
@@ -26,38 +22,6 @@ void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, 
     for (const LaneEdge& e : outline) e.arc ? points.add_arc(e) : points.add_line(e);
     hn::StoreU(points.distance(), kD, distance + k);
   }
-}
-
-EdgeSet CentreDistancesAndEdges(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
-                                double* distance) {
-  alignas(64) double squares[kEdgeBits][base::kLanes];
-  const std::size_t edges = std::min(outline.size(), kEdgeBits);
-  EdgeSet out = 0;
-  for (int k = 0; k < base::kLanes; k += lanes()) {
-    const Centres at(frame, spheres, k);
-    Points all(at.rho, at.z);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const LaneEdge& e = outline[i];
-      Points one(at.rho, at.z);
-      e.arc ? one.add_arc(e) : one.add_line(e);
-      all.square = min(all.square, one.square), all.inside = either(all.inside, one.inside);
-      if (i < edges) hn::Store(one.square, kD, squares[i] + k);
-    }
-    const V d = all.distance(), held = hn::Load(kD, spheres.radius + k);
-    hn::StoreU(d, kD, distance + k);
-    const M reaches = hn::Lt(d, held);
-    if (none(reaches)) continue;
-    // The nearest edge of a point is at most two radii farther from the centre than the centre's own.
-    const V radius = add(held, set(kRounding)), near = add(hn::Abs(d), mul(set(2), radius)), square = mul(near, near);
-    const V low = sub(at.z, radius), high = add(at.z, radius);
-    for (std::size_t i = 0; i < edges; ++i) {
-      const LaneEdge& e = outline[i];
-      M decides = hn::Le(hn::Load(kD, squares[i] + k), square);
-      if (e.arc || e.rises) decides = either(decides, both(hn::Ge(high, set(e.from[1])), hn::Le(low, set(e.to[1]))));
-      if (!none(both(reaches, decides))) out |= EdgeSet{1} << i;
-    }
-  }
-  return out;
 }
 
 void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
@@ -105,7 +69,6 @@ HWY_AFTER_NAMESPACE();
 namespace riffler::collide {
 
 HWY_EXPORT(CentreDistances);
-HWY_EXPORT(CentreDistancesAndEdges);
 HWY_EXPORT(TriangleBounds);
 HWY_EXPORT(BoxBounds);
 
@@ -133,11 +96,6 @@ LaneEdge::LaneEdge(const tool::OutlineEdge& e)
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                       double* distance) {
   HWY_DYNAMIC_DISPATCH(CentreDistances)(outline, frame, spheres, distance);
-}
-
-EdgeSet centre_distances_and_edges(std::span<const LaneEdge> outline, const ToolFrame& frame,
-                                   const SphereGroup& spheres, double* distance) {
-  return HWY_DYNAMIC_DISPATCH(CentreDistancesAndEdges)(outline, frame, spheres, distance);
 }
 
 void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,

@@ -2,8 +2,6 @@
 // chosen at run time.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "collide/drift.hpp"
@@ -27,23 +25,9 @@ struct LaneEdge {
   explicit LaneEdge(const tool::OutlineEdge& e);
 };
 
-/// A bit for each edge of an outline. Edges beyond the last bit have none, so they belong to every set.
-using EdgeSet = std::uint64_t;
-constexpr std::size_t kEdgeBits = 64;
-constexpr EdgeSet kAllEdges = ~EdgeSet{0};
-
-inline bool holds(EdgeSet set, std::size_t edge) {
-  return edge >= kEdgeBits || (set >> edge & 1) != 0;
-}
-
 /// distance[k]: signed distance of the centre of sphere k, mm, negative inside. Equals Outline::nearest up to rounding.
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                       double* distance);
-
-/// The same. Returns the edges that decide whether a point in one of the spheres is inside and, if it is, its distance,
-/// for the spheres that reach into the outline.
-EdgeSet centre_distances_and_edges(std::span<const LaneEdge> outline, const ToolFrame& frame,
-                                   const SphereGroup& spheres, double* distance);
 
 /// low[k]: lower bound of the signed distance over triangle k, which sphere k encloses. It comes from the sphere and
 /// from a tangent plane of every run (outline_runs.hpp). The run's whole solid is behind the plane, so the plane bounds
