@@ -57,8 +57,15 @@ class FalloffBrush(Brush):
         return way / max(len(poses) - 1, 1) if not new or way > 0 else self.spacing(tool.diameter, sculpt.volume.pitch)
 
     def options(self, sculpt, tool):
-        height = sculpt.depth * sculpt.pressure * sculpt.step / (tool.diameter * share(sculpt.falloff))
-        return {"strength": 1.0, "amount": self.sign * height, "falloff": sculpt.falloff}
+        return {"strength": 1.0, "amount": self.sign * self.height(sculpt, tool), "falloff": sculpt.falloff}
+
+    def height(self, sculpt, tool, power=1):
+        """A dab's share of the depth, mm, where its effect is the falloff to that power."""
+        return sculpt.depth * sculpt.pressure * sculpt.step / (tool.diameter * share(sculpt.falloff, power))
+
+    def reach(self, sculpt, tool, strength):
+        """A dab's share of the strength that a whole pass reaches."""
+        return 1 - (1 - strength) ** (2 * sculpt.step / tool.diameter)
 
     def apply(self, sculpt, tool, poses, dt):
         made = sculpt.volume.brush(
@@ -74,5 +81,4 @@ class LevellingBrush(FalloffBrush):
 
     def options(self, sculpt, tool):
         strength = min(sculpt.strength * sculpt.pressure, 0.99)
-        dab = 1 - (1 - strength) ** (2 * sculpt.step / tool.diameter)
-        return {"strength": dab, "amount": 0.0, "falloff": sculpt.falloff}
+        return {"strength": self.reach(sculpt, tool, strength), "amount": 0.0, "falloff": sculpt.falloff}

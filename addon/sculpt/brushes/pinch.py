@@ -1,6 +1,6 @@
 """Pinch, crease and twist."""
 
-from .falloff import FalloffBrush, LevellingBrush, share
+from .falloff import FalloffBrush, LevellingBrush
 
 
 class Pinch(LevellingBrush):
@@ -24,9 +24,9 @@ class Crease(FalloffBrush):
     sign = -1.0
 
     def options(self, sculpt, tool):
-        height = sculpt.depth * sculpt.pressure * sculpt.step / (tool.diameter * share(sculpt.falloff, 2))
-        pinch = 1 - 0.5 ** (2 * sculpt.step / tool.diameter)
-        amount = self.sign * height / pinch if pinch > 0 else 0.0  # the strength is a factor of it
+        pinch = self.reach(sculpt, tool, 0.5)
+        height = self.sign * self.height(sculpt, tool, power=2)
+        amount = height / pinch if pinch > 0 else 0.0  # the strength is a factor of it
         return {"strength": pinch, "amount": amount, "falloff": sculpt.falloff}
 
     def picture(self, draw):

@@ -139,7 +139,7 @@ class PartJudge:
         away = distances(points, self.part)
         below = low[chosen] < over[chosen]
         if self.closed and below.any():  # a cutter may enter a thin overhang within its tolerance, and the void below
-            below[below] = windings(points[below], self.part) > 0.5
+            below[below] = np.abs(windings(points[below], self.part)) > 0.5
         depth = np.where(below, allowance + away, allowance - away)
         return [(p, d) for p, d in zip(points, depth, strict=True) if d > tolerance + ROUNDING]
 
