@@ -147,16 +147,19 @@ PatternRows waterline_rows(const PatternScene& scene, const Progress& progress) 
     }
     return out;
   };
-  const auto between = [&](std::size_t a, std::size_t b, double z) -> std::optional<SurfacePoint> {
+  // The lower of two places, and the point of the level's curve between them.
+  const auto on_curve = [&](std::size_t a, std::size_t b, double z) {
     if (curves.heights()[a] > z) std::swap(a, b);
-    const Vec2 p = curves.border(curves.grid().place(a), curves.grid().place(b), z);
-    const SurfacePoint found = scene.surface.at(p);
+    const Vec2 low = curves.grid().place(a);
+    return std::pair(low, curves.border(low, curves.grid().place(b), z));
+  };
+  const auto between = [&](std::size_t a, std::size_t b, double z) -> std::optional<SurfacePoint> {
+    const SurfacePoint found = scene.surface.at(on_curve(a, b, z).second);
     if (!found.landing.touches || std::abs(found.tip.z - z) > 8 * tolerance) return {};
     return found;
   };
   const auto foot = [&](std::size_t a, std::size_t b, double z) -> std::optional<SurfacePoint> {
-    if (curves.heights()[a] > z) std::swap(a, b);
-    const Vec2 low = curves.grid().place(a), p = curves.border(low, curves.grid().place(b), z);
+    const auto [low, p] = on_curve(a, b, z);
     // A wall that leans by 0.001 rad is no step at its border: the floor is a little farther out.
     const double far = geom::hypot(low.x - p.x, low.y - p.y);
     const Vec2 out = far > tolerance ? p + tolerance / far * (low - p) : low;

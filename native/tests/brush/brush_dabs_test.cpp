@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "dexel/ends.hpp"
 #include "dexel/solids.hpp"
 #include "dexel/volumes.hpp"
 #include "riffler/base/error.hpp"
@@ -16,8 +17,6 @@
 #include "riffler/dexel/boolean.hpp"
 #include "riffler/dexel/file/file.hpp"
 #include "riffler/dexel/quadrics.hpp"
-#include "riffler/marching/to_mesh.hpp"
-#include "riffler/mesh/audit.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::brush::brush_dabs_test {
@@ -27,6 +26,8 @@ using dexel::Frame;
 using dexel::Grid;
 using dexel::Span;
 using test::error_of;
+using test::expect_sound;
+using test::for_each_end;
 
 constexpr Kind kAll[] = {Kind::Clay, Kind::Inflate,   Kind::Flatten, Kind::Scrape, Kind::Fill,
                          Kind::Grab, Kind::SnakeHook, Kind::Pinch,   Kind::Crease, Kind::Twist};
@@ -85,40 +86,6 @@ Case case_of(Kind kind, const Vec3& centre, const Vec3& axis, double radius) {
   const double size = kind == Kind::Twist ? 0.9 : kind == Kind::Crease ? -0.15 * radius : 0.15 * radius;
   const Vec3 side = glm::normalize(glm::cross(axis, Vec3(0.3, 0.5, 0.8)));
   return {kind, centre, axis, centre + radius * (0.25 * axis + 0.2 * side), radius, 0.8, size};
-}
-
-/// f(place, normal) for every end, in the world frame.
-void for_each_end(const Volume& volume, const std::function<void(const Vec3&, const Vec3&)>& f) {
-  for (const Grid& grid : volume.grids())
-    for (int i = 0; i < grid.nu(); ++i)
-      for (int j = 0; j < grid.nv(); ++j) {
-        const auto spans = grid.ray(i, j);
-        const auto normals = grid.ray_normals(i, j);
-        for (std::size_t k = 0; k < spans.size(); ++k) {
-          f(to_world(grid.axis(), {grid.u(i), grid.v(j), spans[k].near}), normals[k].near.unpack());
-          f(to_world(grid.axis(), {grid.u(i), grid.v(j), spans[k].far}), normals[k].far.unpack());
-        }
-      }
-}
-
-/// Spans in order, apart and within the box; a closed two-manifold mesh without defects.
-void expect_sound(const Volume& volume) {
-  const double least = 1e-9 * volume.frame().pitch;
-  for (const Grid& grid : volume.grids())
-    for (int i = 0; i < grid.nu(); ++i)
-      for (int j = 0; j < grid.nv(); ++j) {
-        double last = -1e300;
-        for (const Span& s : grid.ray(i, j)) {
-          ASSERT_GE(s.near - last, 0.99 * least);
-          ASSERT_GE(s.length(), 0.99 * least);
-          ASSERT_GE(s.near, grid.box().lower.z);
-          ASSERT_LE(s.far, grid.box().upper.z);
-          last = s.far;
-        }
-      }
-  const mesh::Audit a = audit(marching::to_mesh(volume));
-  EXPECT_TRUE(a.watertight());
-  EXPECT_EQ(a.degenerate + a.duplicates + a.folds, 0U);
 }
 
 /// The ends of all rays outside of where a case acts are the same bits, in the same order.
