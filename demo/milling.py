@@ -1,4 +1,4 @@
-"""The sculpted figure's way out of a block: a bust of half its size, milled from five sides by a job (demo/bust.toml).
+"""Mills a bust, half the size of the sculpted figure, from a block: a job from five sides (demo/bust.toml).
 
 The figure stands on a pin on a base, which a vise holds; all three become one solid. The job plans its operations in
 order, each on the stock that the one before leaves, and verifies its NC code as the machine will read it.

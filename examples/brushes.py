@@ -12,7 +12,7 @@ RADIUS, TOP = 7.0, 14.0
 volume = riffler.Volume.block((0, 0, 0), (128, 40, 26), pitch=0.25, directions="xyz")
 volume.carve(riffler.Tool.flat(400, 60), [(x, 20, TOP, 0, 0, 1) for x in (60, 61)])  # room for what is added
 groove = riffler.Tool.ball(2, 30)
-for y in range(4, 38, 4):  # so that one sees where the surface goes
+for y in range(4, 38, 4):  # grooves that show how the surface moves
     volume.carve(groove, [(-3, y, TOP - 0.5, 0, 0, 1), (131, y, TOP - 0.5, 0, 0, 1)])
 start = volume.volume
 
@@ -40,7 +40,7 @@ made = {
     "crease": volume.brush("crease", stroke(118), RADIUS, strength=0.08, amount=-4, falloff="sharp"),
 }
 change = sum(effect.added - effect.removed for effect in made.values())
-print(f"volume {volume.volume - start:+.2f} mm³, the brushes say {change:+.2f} mm³")
+print(f"volume {volume.volume - start:+.2f} mm³, the brushes report {change:+.2f} mm³")
 audit = volume.to_mesh().audit()
 print(f"open edges {audit.open_edges}, clipped {any(effect.clipped for effect in made.values())}")
 

@@ -1,4 +1,4 @@
-"""What operators that write NC code share: the file's suffix, and asking for the file."""
+"""The part that operators which write NC code share: the file's suffix and the file browser."""
 
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
@@ -23,7 +23,7 @@ class WritesNc(GivenOptions, ExportHelper):
         self._take_settings(context)
         try:
             programs.options(context.scene, self.post, self.options)
-        except ValueError as error:  # before the user chooses a file in vain
+        except ValueError as error:  # reported before the user chooses a file
             return operator_parts.fail(self, error)
         if not self.filepath:
             self.filepath = self._stem(context) + self.filename_ext

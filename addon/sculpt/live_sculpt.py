@@ -71,7 +71,7 @@ class LiveSculpt:
         self.token = ""  # of the current state
         self._facts = None  # (token, facts of its state)
         self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
-        self.strength, self.depth, self.falloff = 0.5, 0.5, "smooth"  # of brushes
+        self.strength, self.depth, self.falloff = 0.5, 0.5, "smooth"  # settings of brushes
         self.pressure, self.step = 1.0, 0.0  # of the moves that are being applied: share of the depth; mm between dabs
         self.keep_out = None  # for symmetric copies, like BrushStroke's
         self.stroke = None  # StrokeRecord of the stroke in progress
@@ -255,7 +255,7 @@ class LiveSculpt:
         return True
 
     def _restart(self):
-        """Restores the stroke's beginning."""
+        """Restores the state before the stroke."""
         begin = self.stroke.begin.copy()
         self.volume, self.mask = begin.volume, begin.mask
         self.persistence.cancelled()

@@ -98,8 +98,8 @@ def tool_lines(cutter, pose, place, normal, view):
 
 
 def falloff_lines(radius, falloff, pose, view):
-    """The same of a brush with falloff: its radius on the surface, where it has half its effect, and the falloff above
-    it, as high as half the radius."""
+    """The same for a brush with falloff: a ring of its radius on the surface, a ring where it has half its effect, and
+    the falloff's profile above them, half a radius high."""
     centre, normal = pose[:3], pose[3:]
     out = [(glyphs.ring(centre, normal, radius), True, True)]
     t = np.linspace(0, 1, PROFILE)

@@ -17,7 +17,7 @@ def is_sculpt(ob):
 
 
 def in_scene(ob, scene):
-    """The object if it is a sculpt of the scene, otherwise None: a pointer keeps an object that was deleted."""
+    """The object if it is a sculpt of the scene, otherwise None: a pointer property may still name a deleted object."""
     return ob if is_sculpt(ob) and scene.objects.get(ob.name) == ob else None
 
 

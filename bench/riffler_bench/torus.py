@@ -25,7 +25,7 @@ def torus() -> Surface:
 
 
 def poses(a: np.ndarray, b: np.ndarray, depth: float, lean: float) -> np.ndarray:
-    """A ball that is `depth` in the torus at the angles `a` around it and `b` around its tube."""
+    """Poses of a ball `depth` mm deep in the torus, at the angles `a` around it and `b` around its tube."""
     ring = np.column_stack([np.cos(a), np.sin(a), np.zeros_like(a)])
     normal = np.cos(b)[:, None] * ring + np.sin(b)[:, None] * [0, 0, 1]
     axis = normal + lean * np.column_stack([-np.sin(a), np.cos(a), np.full_like(a, 0.3)])
@@ -34,7 +34,7 @@ def poses(a: np.ndarray, b: np.ndarray, depth: float, lean: float) -> np.ndarray
 
 
 def measured(tolerance: float | None, count: int) -> dict[str, Any]:
-    """The work of one process: a tolerance of triangles in mm, or None for the exact surface."""
+    """Measures one surface, in a process of its own. `tolerance`: of triangles, mm; None: the exact surface."""
     surface = torus()
     part = surface if tolerance is None else surface.to_mesh(tolerance)
     start = time.process_time()

@@ -57,5 +57,5 @@ def test_an_error_and_a_long_value_do_not_hide_the_rest():
     assert max(map(len, lines)) < LONGEST + 30
 
 
-def test_what_is_no_function_of_python_shows_its_result():
+def test_a_condition_that_is_no_python_function_shows_its_result():
     assert explain([].__len__) == "the condition is 0 now"

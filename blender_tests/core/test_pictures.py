@@ -32,7 +32,7 @@ def complaints(image, vary=()):
     return pictures.judge(pictures.grids(image), pictures.grids(window()), AREAS, vary)
 
 
-def test_luminance_is_the_mean_of_a_cell_whatever_the_size():
+def test_luminance_is_the_mean_of_a_cell_at_any_size():
     image = np.zeros((97, 131))
     image[:, :50] = 1
     expected = [np.mean([x < 50 for x in range(a, b)]) for a, b in

@@ -122,7 +122,7 @@ def sessions(folder):
 SCENES = {"engrave.md": engrave, "planning.md": planning, "sessions.md": sessions}
 
 
-def test_every_example_has_a_scene_and_says_where_it_runs():
+def test_every_example_has_a_scene_and_names_where_it_runs():
     assert {page for page, *_ in blocks()} == set(SCENES)
     for page, first, above, _ in blocks():
         assert above == MARK, f"docs/{page}:{first - 1}: put {MARK} above it"

@@ -192,7 +192,7 @@ def test_a_reload_replaces_all_modules():
         enable()
 
 
-def test_an_update_that_finds_the_old_core_at_work_says_so():
+def test_an_update_that_finds_the_old_core_loaded_reports_it():
     import riffler
 
     disable()

@@ -39,7 +39,7 @@ def other(device):
     return next(kind for kind in riffler.pen.kinds() if kind not in ("simulated", device))
 
 
-def test_the_preferences_are_the_addons_in_whatever_way_it_was_installed():
+def test_the_preferences_are_the_addons_for_every_kind_of_installation():
     found = bpy.context.preferences.addons[common.MODULE].preferences
     assert (
         found == common.part("blender.preferences_access").preferences()

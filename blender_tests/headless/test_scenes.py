@@ -73,7 +73,7 @@ def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
     assert bpy.ops.riffler.verify_clear() == {"FINISHED"} and not bpy.data.objects["Step"].hide_get()
 
 
-def test_new_stock_is_seen_whatever_collection_is_active():
+def test_new_stock_is_visible_for_any_active_collection():
     linked()
     activate("Elsewhere")
     assert common.stock().users_collection == (bpy.context.scene.collection,)
@@ -146,7 +146,7 @@ def told(draw):
     return shown
 
 
-def test_the_sidebar_is_wide_enough_for_what_the_panel_says_without_a_sculpt():
+def test_the_sidebar_is_wide_enough_for_the_panels_text_without_a_sculpt():
     panel = common.part("stock.panel").RIFFLER_PT_sculpt
     shown = told(lambda layout, context: panel.draw(SimpleNamespace(layout=layout), context))
     assert " ".join(shown) == "No sculpt is active. Make one below."

@@ -49,7 +49,7 @@ def settings(**chosen):
     return found
 
 
-def test_the_toolbar_has_the_tools_in_two_groups_with_icons_that_are_there():
+def test_the_toolbar_has_the_tools_in_two_groups_with_existing_icons():
     from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active as toolbar
 
     groups = [g for g in toolbar._tools["OBJECT"] if isinstance(g, tuple) and g[0] is not None]

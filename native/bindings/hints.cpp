@@ -2,7 +2,8 @@
 //
 // pybind11 makes each function a PyCFunction whose method table belongs to this function alone. Here its entry is
 // replaced by one that calls the old entry and looks at an error only. The function stays what it was for pickle, help
-// and isinstance; a signature at the head of its docstring lets inspect.signature see the arguments.
+// and isinstance; a signature at the head of its docstring lets inspect.signature see the arguments. Entries of
+// pybind11 3.0 take a tuple and a dict, those of 3.1 take an array and names (METH_FASTCALL).
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -25,7 +26,11 @@ std::unordered_map<PyObject*, Known>& known() {
   return *all;
 }
 
-PyCFunctionWithKeywords dispatch = nullptr;  // pybind11's own, the same for every function
+using FastEntry = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
+
+// pybind11's own entry, the same for every function: one of the two is set.
+PyCFunctionWithKeywords dispatch = nullptr;
+FastEntry dispatch_fast = nullptr;
 
 /// pybind11's words for arguments that fit no overload of this function, and not those of a callback's call.
 bool is_misfit(const std::string& message, const std::string& name) {
@@ -59,6 +64,19 @@ PyObject* call(PyObject* record, PyObject* args, PyObject* kwargs) {
   PyObject* const found = dispatch(record, args, kwargs);
   if (found || !PyErr_ExceptionMatches(PyExc_TypeError)) return found;
   return answer(record, args, kwargs);
+}
+
+PyObject* call_fast(PyObject* record, PyObject* const* args, Py_ssize_t count, PyObject* names) {
+  PyObject* const found = dispatch_fast(record, args, count, names);
+  if (found || !PyErr_ExceptionMatches(PyExc_TypeError)) return found;
+  py::error_already_set error;
+  py::tuple positional(count);
+  py::dict keywords;
+  for (Py_ssize_t k = 0; k < count; ++k) positional[static_cast<std::size_t>(k)] = py::handle(args[k]);
+  for (Py_ssize_t k = 0; names && k < PyTuple_GET_SIZE(names); ++k)
+    keywords[py::handle(PyTuple_GET_ITEM(names, k))] = py::handle(args[count + k]);
+  error.restore();
+  return answer(record, positional.ptr(), keywords.ptr());
 }
 
 /// Reads the first line of a docstring of pybind11, "name(self: T, a: X, b: Y = 1) -> Z", argument by argument.
@@ -136,16 +154,28 @@ PyObject* plain_function(PyObject* object) {
   return PyCFunction_CheckExact(object) ? object : nullptr;
 }
 
+/// Puts our entry in the place of the one in a method table, and keeps that in `own`. Returns whether it did: every
+/// function of pybind11 has the same entry, and others are left alone.
+template <typename Entry>
+bool replace_entry(PyMethodDef& table, Entry& own, Entry ours) {
+  const auto entry = reinterpret_cast<Entry>(reinterpret_cast<void (*)()>(table.ml_meth));
+  if (!own) own = entry;
+  if (entry != own) return false;
+  table.ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(ours));
+  return true;
+}
+
 /// Puts our entry in the place of pybind11's. Returns the signature, empty where there is none.
 std::string hook(PyObject* function, const std::string& name) {
   PyMethodDef* const table = reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
   PyObject* const record = PyCFunction_GET_SELF(function);
-  if (!record || table->ml_flags != (METH_VARARGS | METH_KEYWORDS) || known().contains(record)) return {};
-  const auto entry = reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(table->ml_meth));
-  if (!dispatch) dispatch = entry;
-  if (entry != dispatch) return {};
+  if (!record || known().contains(record)) return {};
+  const bool replaced = table->ml_flags == (METH_VARARGS | METH_KEYWORDS) ? replace_entry(*table, dispatch, &call)
+                        : table->ml_flags == (METH_FASTCALL | METH_KEYWORDS)
+                            ? replace_entry(*table, dispatch_fast, &call_fast)
+                            : false;
+  if (!replaced) return {};
   known().emplace(record, Known{name, function});
-  table->ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&call));
   if (!table->ml_doc) return {};
   const std::string signature = signature_in(table->ml_doc);
   if (signature.empty()) return {};

@@ -21,7 +21,7 @@ bool left_of(const Vec3& a, const Vec3& b, bool forward, double u, double v, dou
 }
 
 /// For each vertex, the first ray at or after it along u and along v. A triangle crosses only rays between those of its
-/// corners: most cross none, and need no other look.
+/// corners: most cross none and are skipped.
 class FirstRays {
  public:
   FirstRays(const Grid& grid, const std::vector<Vec3>& vertices) : first_(vertices.size()) {
@@ -74,7 +74,7 @@ struct Facet {
 };
 
 /// The crossing at the corner weights. Between the vertices the surface is the mean of the triangle and of the tangent
-/// planes at its corners, which is exact for a quadric's: the sagitta is half of what the planes say.
+/// planes at its corners, which is exact for quadrics: the sagitta is half of the planes' height.
 Crossing crossing_at(const Facet& facet, const Vec3 (&normals)[3], const Vec3& weights, double pitch) {
   Crossing out{};
   Vec3 place(0), normal(0);

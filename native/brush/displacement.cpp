@@ -61,7 +61,7 @@ double Displacement::weight(const Vec3& p) const {
   return strength_ * falloff_at(falloff_, glm::length(p - reach_.centre) / reach_.radius);
 }
 
-/// Smooth, so that the edge of what moves is; the surface counts in full from 60° off the axis.
+/// Smooth, so that the displacement has no jump where the surface turns away; 1 up to 60° off the axis.
 double Displacement::facing(const Vec3& n) const {
   const double s = std::clamp(2 * glm::dot(n, axis_), 0.0, 1.0);
   return s * s * (3 - 2 * s);

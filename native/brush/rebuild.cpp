@@ -14,12 +14,12 @@ using dexel::PackedNormal;
 using dexel::Span;
 using dexel::SpanNormals;
 
-/// An end that would move by less stays bit-identical, pitches.
+/// An end that would move by less, in pitches, stays bit-identical.
 constexpr double kStays = 1e-6;
-/// A crossing of the mesh without an end on the ray counts from this displacement on, pitches: nothing appears where
-/// nothing moves.
+/// Smallest displacement, in pitches, from which a crossing of the mesh without an end on the ray counts: nothing
+/// appears where nothing moves.
 constexpr double kAppears = 1e-3;
-/// Largest distance, along the normal, between an end and the mesh's crossing that shows it, pitches.
+/// Largest distance along the normal, in pitches, between an end and the crossing of the mesh at the same wall.
 constexpr double kSame = 0.75;
 
 /// An end of material on a ray, in the volume's frame.
@@ -71,7 +71,7 @@ class RayBuilder {
   bool enters(std::size_t old) const { return old % 2 == 0; }
   double normal_along(std::size_t old) const { return to_local(axis_, old_[old].normal.unpack()).z; }
 
-  /// Finds the old end that each crossing before the displacement shows.
+  /// Finds, for each crossing before the displacement, the old end at the same wall.
   void match(std::span<const Crossing> before) {
     of_crossing_.assign(before.size(), kNone), shown_.assign(old_.size(), false);
     if (before.size() == old_.size()) {

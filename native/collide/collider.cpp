@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kPieces = 32;  // length of the pieces of large triangles, in units of the chosen point spacing
 constexpr double kBoxes = 1.5;  // side of a fixture's boxes, in units of the part's point spacing
-// Of an exact part's size: largest distance of the tree's triangles from it, and of those for checks of motions.
+// As shares of an exact part's size: largest distance from it of the tree's triangles, and of those that check motions.
 constexpr double kChord = 2e-4, kFineChord = 2e-5;
 constexpr double kCellChord = 0.05;  // largest distance of a triangle from the exact part, relative to its cell's size
 constexpr double kLongestCell = 0.05;  // of the part's size
@@ -237,7 +237,7 @@ std::vector<const Surface*> Collider::Data::for_motions() const {
 }
 
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {
-  if (data_->exact) {  // what chords keep, less their distance from the exact part, that one keeps as well
+  if (data_->exact) {  // the part is at most a chord nearer than the chords
     const std::vector<const Surface*> some = data_->for_motions();
     const double chord = some.front()->max_chord();
     Swept swept = SweptSearch(assembly, motion, wanted + chord, most)(some);

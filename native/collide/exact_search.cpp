@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxExactCells = 20'000;  // of one piece
 
-/// Parameters of the place of a triangle that is nearest to p, by areas.
+/// Parameters of the place of a triangle that is nearest to p, by barycentric coordinates.
 Vec2 parameters_at(const Corners& t, const Vec2* uv, const Vec3& p) {
   const Vec3 x = t.b - t.a, y = t.c - t.a, z = p - t.a;
   const double xx = glm::dot(x, x), xy = glm::dot(x, y), yy = glm::dot(y, y), det = xx * yy - xy * xy;
@@ -135,7 +135,7 @@ bool TriangleSearch::proven(const ExactPiece& piece, const ExactCell& cell, cons
     if (nurbs::Excess::tangent_is_positive(h, at, form)) return true;
     const double before = least_.distance;
     const Vec2 there = lower + at * size;
-    // A point of the rectangle, but perhaps not of the triangle, which borders may end.
+    // A point of the rectangle, but perhaps not of the triangle, which may end at a border.
     if (contains(cell.uv, there)) look(nurbs::affine(h.s));
     if (!(least_.distance < before)) return false;
   }

@@ -59,7 +59,7 @@ void NearestSearch::look_closely(const Surface& surface, const SphereGroup& sphe
     for (int k = 0; k < base::kLanes; ++k) places.low[k] -= surface.chord(first + static_cast<std::size_t>(k));
 }
 
-/// `enough`: of the triangles' own distances.
+/// `enough`: distance of the flat triangles from which on none of them matters.
 void NearestSearch::find_lowest(const Surface& surface, const SphereGroup& spheres, std::size_t first, double enough,
                                 LanePlaces& places, std::size_t which) {
   lowest_places(assembly_.runs(), assembly_.lane_edges(), frame_, &surface.corners(first), enough, 0.5 * slack_,

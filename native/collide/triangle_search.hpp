@@ -140,7 +140,7 @@ class TriangleSearch {
   base::BlockVector<Cell> heap_;
   base::BlockVector<ExactCell> exact_heap_;
   nurbs::Excess excess_;
-  bool on_chord_ = false;  // looks are not at points of the surface
+  bool on_chord_ = false;  // look() gets points of the chord, not of the surface
   std::size_t cells_ = 0;
   double loose_ = 0;
   double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;

@@ -11,8 +11,8 @@ STAY = 0.6  # points
 
 
 def point_at(station: float, last: int, points: int, closed: bool) -> int:
-    """The point of a path at a station (a point index with a fraction): `last` within STAY of it, otherwise the
-    nearest. A tool that rests half way between two points stays with one; frame and map would flicker between them."""
+    """The point of a path for a station (a point index with a fraction): `last` if that is within STAY of it, otherwise
+    the nearest point. Without STAY, frame and map would flicker where a tool rests half way between two points."""
     away = abs(station - last)
     away = min(away, points - away) if closed else away
     return last if away <= STAY else round(station) % points

@@ -39,9 +39,9 @@ class Brush(ABC):
     clear = False  # avoids fixtures
     chips = False  # the material resists, so there is a force
     session = False  # usable in a device's session
-    falloff = False  # has a falloff, which the cursor shows, instead of the cutter's shape
+    falloff = False  # has a falloff; the cursor shows it instead of the cutter's shape
     drags = False  # follows the pointer in the plane of the view, not on the surface
-    whole = False  # each move replaces the last ones: it is applied to the stroke's beginning
+    whole = False  # each move replaces the earlier ones: it is applied to the surface before the stroke
 
     done = "changed"  # "3 mm³ changed"
     no_stroke = "no stroke"  # reason why a session changed nothing
@@ -73,7 +73,7 @@ class Brush(ABC):
         return moving(poses, dt)
 
     def step(self, sculpt, tool, poses, new: bool) -> float:
-        """Sculpt.step of moves, before `apply`, which has fewer poses."""
+        """Sculpt.step for these poses, of which `moves` may leave out some before `apply`."""
         return 0.0
 
     def options(self, sculpt, tool) -> dict:

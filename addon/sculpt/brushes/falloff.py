@@ -7,20 +7,20 @@ import riffler
 
 from .brush import Brush, Path
 
-DABS = 1 / 10  # share of the tool's width between two dabs
-STEPS = 512  # of the integral over the falloff
+DABS = 1 / 10  # distance between two dabs, as a share of the tool's width
+STEPS = 512  # samples of the integral over the falloff
 
 
 @cache
 def share(falloff: str, power: int = 1) -> float:
-    """Mean of the falloff, to that power, along a line through the centre, over the radius."""
+    """Mean of the falloff, raised to `power`, from the centre to the radius."""
     t = (np.arange(STEPS) + 0.5) / STEPS
     return float(np.mean([riffler.falloff(falloff, x) ** power for x in t]))
 
 
 class FalloffBrush(Brush):
-    """A subclass has the `kind` of Volume.brush. Its settings are mm of a whole pass of the brush: a dab has the share
-    of its distance from the last one, so the result does not depend on the number of dabs."""
+    """A subclass has the `kind` of Volume.brush. Settings are those of a whole pass of the brush, in mm: each dab gets
+    a share in proportion to its distance from the last one, so the result does not depend on the number of dabs."""
 
     kind = ""
     sign = 1.0  # of the amount
@@ -48,7 +48,7 @@ class FalloffBrush(Brush):
         return Path("NORMAL", 0.0, {"spacing": self.spacing(diameter, pitch)})
 
     def moves(self, poses, dt, new):
-        """A continued move's first pose has its dab already, and a new one's is where the tool comes down."""
+        """All poses but the first, which has had its dab, or is where the tool comes down."""
         return poses[1:], None
 
     def step(self, sculpt, tool, poses, new):
@@ -60,7 +60,7 @@ class FalloffBrush(Brush):
         return {"strength": 1.0, "amount": self.sign * self.height(sculpt, tool), "falloff": sculpt.falloff}
 
     def height(self, sculpt, tool, power=1):
-        """A dab's share of the depth, mm, where its effect is the falloff to that power."""
+        """A dab's share of the depth, mm, for an effect that is the falloff raised to `power`."""
         return sculpt.depth * sculpt.pressure * sculpt.step / (tool.diameter * share(sculpt.falloff, power))
 
     def reach(self, sculpt, tool, strength):
@@ -75,7 +75,7 @@ class FalloffBrush(Brush):
 
 
 class LevellingBrush(FalloffBrush):
-    """Moves the surface towards a plane or a line: the strength is what a whole pass reaches."""
+    """Moves the surface towards a plane or a line. The strength is that of a whole pass."""
 
     second = "STRENGTH"
 

@@ -10,7 +10,7 @@ class Pulls(FalloffBrush):
     drags = True
 
     def moves(self, poses, dt, new):
-        """No move where the pointer stands."""
+        """No move while the pointer stands still."""
         return poses if np.ptp(poses[:, :3], axis=0).any() else poses[:0], None
 
     def options(self, sculpt, tool):

@@ -1,5 +1,5 @@
-"""The path of a brush that pulls the surface: the pointer moves it in the plane of the view, through the place where
-the stroke began."""
+"""The path of a brush that pulls the surface. The pointer moves the brush in the plane that is parallel to the view and
+contains the stroke's first point."""
 
 from __future__ import annotations
 

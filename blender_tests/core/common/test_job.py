@@ -59,7 +59,7 @@ def job(volume, *cuts):
     return CutJob(volume, cuts, lambda tool: tool, clock=volume.clock)
 
 
-def test_every_move_is_cut_once_and_in_order_whatever_the_slices():
+def test_every_move_is_cut_once_and_in_order_for_any_slices():
     for budget in (1e-9, 0.0005, 0.01, 10.0):
         volume = Volume(Clock())
         j = job(volume, cut(0, 57, "a", 0.02), cut(100, 1), cut(200, 133))

@@ -83,7 +83,7 @@ def test_boxes_have_the_predicted_number_of_triangles():
     assert 2 * estimate.box_area((20, 20, 20)) / 0.5**2 == 19_200
 
 
-def test_a_report_is_a_table_and_folders_say_whether_they_can_be_used(tmp_path, monkeypatch):
+def test_a_report_is_a_table_that_shows_whether_folders_can_be_used(tmp_path, monkeypatch):
     text = diagnosis.table("Title", [("a", "1"), ("longer", "2")])
     assert text == "Title\na       1\nlonger  2\n"
     assert diagnosis.folder(tmp_path) == str(tmp_path)

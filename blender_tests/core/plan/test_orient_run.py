@@ -1,4 +1,4 @@
-"""The point of a path at which a tool stands that a hand leads along it."""
+"""The point of a path for a tool that is led along it by hand."""
 
 from addon.plan.pure import orient_run
 
@@ -13,7 +13,7 @@ def test_a_tool_that_trembles_between_two_points_stays_with_one():
     assert orient_run.point_at(103.39, 104, 145, closed=False) == 103
 
 
-def test_a_closed_path_goes_on_at_its_first_point():
+def test_a_closed_path_continues_at_its_first_point():
     assert orient_run.point_at(71.7, 0, 72, closed=True) == 0
     assert orient_run.point_at(71.55, 71, 72, closed=True) == 71
     assert orient_run.point_at(71.65, 71, 72, closed=True) == 0

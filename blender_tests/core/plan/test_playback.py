@@ -91,7 +91,7 @@ def test_a_displaced_tip_is_detected_with_its_place():
     assert "at frame" in str(found)
 
 
-def test_rows_that_cannot_be_told_apart_are_not_hidden():
+def test_rows_that_cannot_be_distinguished_are_not_hidden():
     """Frames beyond what single precision resolves: rows vanish from the animation, and the difference says so."""
     way = program()
     late = motion.Motion(4e6 + 0.05 * way.frames, way.poses)

@@ -134,7 +134,7 @@ def test_single_precision_angles_are_the_degrees_that_were_meant():
     assert tool_rotation.said(math.radians(7.5), -math.radians(30)) == "Inclination 7.5°, tilt -30°"
 
 
-def test_a_ball_stands_with_its_middle_on_the_point_whatever_its_axis():
+def test_a_ball_stands_with_its_middle_on_the_point_for_any_axis():
     path, tool = valley(5, 20), riffler.Tool.ball(6, 25)
     for axis in ((0.6, -0.48, 0.64), (0, 0, 1), (-0.8, -0.6, 0)):
         assert np.allclose(tool_rotation.stand(path, 2, axis, tool), [*(path.centres[2] - 3 * np.array(axis)), *axis])

@@ -84,19 +84,19 @@ def test_a_journal_replays_exactly_what_a_brush_does(tmp_path, brush):
 
 @pytest.mark.parametrize("falloff", ["smooth", "sharp", "sphere", "constant"])
 @pytest.mark.parametrize("step", [0.3, 1.0])
-def test_a_pass_of_clay_adds_its_depth_whatever_the_steps_are(falloff, step):
+def test_a_pass_of_clay_adds_its_depth_for_any_steps(falloff, step):
     sculpt, clay = Sculpt(), brushes.of("clay")
     sculpt.volume = riffler.Volume.block((0, 0, 0), (40, 30, 12), 0.25, "xyz")
     sculpt.volume.carve(riffler.Tool.flat(90, 30), [(20, 15, 8, 0, 0, 1), (21, 15, 8, 0, 0, 1)])
     sculpt.mask, sculpt.falloff = None, falloff
     poses = np.array([[x, 15.0, 8.0, 0, 0, 1] for x in np.arange(6, 34 + step / 2, step)])
-    for k in range(0, len(poses) - 4, 4):  # as events come
+    for k in range(0, len(poses) - 4, 4):  # in pieces, as events of the mouse bring them
         piece = poses[k : k + 5]
         sculpt.step = clay.step(sculpt, BALL, piece, False)
         clay.apply(sculpt, BALL, clay.moves(piece, None, False)[0], None)
     counts, spans = sculpt.volume.intervals("z")
     heights = spans[np.cumsum(counts.ravel()) - 1, 1].reshape(counts.shape) - 8
-    assert heights[80, 60] == pytest.approx(sculpt.depth, rel=0.08)  # what rises leaves the centre
+    assert heights[80, 60] == pytest.approx(sculpt.depth, rel=0.08)  # a rising surface moves away from the dab's centre
     assert heights[:, :40].max() < 1e-9 and not sculpt.cut_off
 
 

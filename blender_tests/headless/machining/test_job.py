@@ -211,7 +211,7 @@ def test_another_axis_and_any_unit():
     assert "3-axis" in refused(bpy.ops.riffler.machining_nc, filepath=common.out("never.ngc"), post="3-axis")
 
 
-def test_what_is_missing_is_said():
+def test_missing_input_is_reported():
     assert "part" in refused(bpy.ops.riffler.machining_calculate)
     bpy.context.scene.riffler.plan.part = plans.part_object(1000.0)
     assert "Make Stock" in refused(bpy.ops.riffler.machining_calculate)
@@ -229,7 +229,7 @@ def test_what_is_missing_is_said():
     assert not settings().rows
 
 
-def test_an_operation_without_moves_says_why():
+def test_an_operation_without_moves_gives_the_reason():
     rough, finish = job()
     rough.on = False
     finish.slope_from, finish.slope_to = np.radians(30), np.radians(40)

@@ -38,7 +38,7 @@ def test_a_session_that_cuts_nothing_changes_nothing():
     nothing_is_left()
 
 
-def test_a_session_says_that_it_makes_no_copies():
+def test_a_session_reports_that_it_makes_no_copies():
     sculpt()
     settings = bpy.context.scene.riffler.sculpt
     for mirror, radial, said in ((set(), 1, False), ({"X"}, 1, True), (set(), 3, True)):
@@ -328,7 +328,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
 
 
 @common.core_bound
-def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
+def test_a_puck_carves_where_it_is_pushed_at_the_speed_of_its_curve():
     """A SpaceMouse of umockdev, in a Blender of its own: it must exist when Blender starts."""
     with tempfile.TemporaryDirectory() as name:
         place = Path(name)

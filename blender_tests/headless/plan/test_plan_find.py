@@ -89,7 +89,7 @@ def test_passes_lie_on_both_sides_of_the_valley():
     assert all(c.name.startswith(f"Path {k + 1}: ") for k, c in enumerate(curves(ob)))
 
 
-def test_a_part_without_valleys_says_why_and_nothing_is_made():
+def test_a_part_without_valleys_gives_the_reason_and_makes_nothing():
     bpy.ops.mesh.primitive_cube_add(size=20)
     common.scale(1)
     settings().part = bpy.context.object

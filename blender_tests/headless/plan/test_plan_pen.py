@@ -135,7 +135,7 @@ def test_the_axis_stops_where_the_holder_hits_the_wall():
     ended(ob)
 
 
-def test_undo_takes_a_key_back_and_the_session_goes_on():
+def test_undo_removes_a_key_and_the_session_continues():
     ob = scene()
     name, ends = ob.name, indices(ob)[0]
     common.push("timeline")

@@ -297,7 +297,7 @@ def test_a_stepped_shank_or_holder_keeps_its_pieces_where_its_sizes_stay():
     common.refused(lambda: assembled(reach=33), "begins at 35 mm", "more reach")
 
 
-def test_the_dialog_says_which_pieces_become_one():
+def test_the_dialog_names_the_pieces_that_become_one():
     assembled()
     operator = common.part("plan.operators.setup").RIFFLER_OT_plan_assembly
 

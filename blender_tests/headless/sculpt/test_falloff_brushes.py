@@ -20,7 +20,7 @@ def part(name):
 
 
 def view(middle):
-    """From above, leaning back, ten pixels per millimetre: what is pulled in its plane leaves the surface."""
+    """A view from above that leans back, ten pixels per millimetre. A pull in its plane leads out of the surface."""
     right, up = np.array([1.0, 0, 0]), np.array([0, np.cos(TILT), np.sin(TILT)])
     rows = np.array([right * 2 / (SIZE[0] * PIXEL), up * 2 / (SIZE[1] * PIXEL), -0.01 * np.cross(right, up)])
     matrix = np.eye(4)
@@ -29,7 +29,7 @@ def view(middle):
 
 
 def stroke(ob, *pixels, pressures=(), **more):
-    """Through pixels from the middle of the view."""
+    """A stroke through pixels, counted from the middle of the view."""
     rows = [[0.5 * SIZE[0] + x, 0.5 * SIZE[1] + y] for x, y in pixels]
     for row, pressure in zip(rows, pressures, strict=False):
         row.append(pressure)
@@ -76,7 +76,7 @@ def test_every_brush_makes_a_stroke_that_undo_redo_and_the_journal_repeat_to_the
     assert run.shaped and len(run.cuts) == 2, "no brush makes NC code"
 
 
-def test_a_grab_is_one_displacement_wherever_the_pointer_went():
+def test_a_grab_is_one_displacement_for_any_path_of_the_pointer():
     made = []
     for between in ((), ((40, 60), (-70, -30), (0, 80))):
         name = stock().name
@@ -121,7 +121,7 @@ def test_clay_follows_depth_pressure_falloff_symmetry_and_mask():
     assert 0.2 * plain < added() < 0.8 * plain
 
 
-def test_what_leaves_the_box_is_cut_off_with_a_warning():
+def test_material_that_leaves_the_box_is_cut_off_with_a_warning():
     name = stock().name
     bpy.context.scene.riffler.sculpt.strength = 1.0
     assert stroke(name, (0, -120), (0, 145), mode="GRAB") == {"FINISHED"}  # 15 mm up, where 12 are free

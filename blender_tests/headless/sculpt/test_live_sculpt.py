@@ -310,7 +310,7 @@ def test_undo_fills_no_chunk_again():
     is_shown(name)
 
 
-def test_undo_past_the_beginning_ends_the_work_and_redo_goes_on_with_it():
+def test_undo_past_the_beginning_ends_the_work_and_redo_continues_it():
     name = sculpt()
     before = common.content(bpy.data.objects[name]).volume.to_bytes()
     first, second = stroke(name, 0), stroke(name, 1)
@@ -426,7 +426,7 @@ def outlines():
     return [space.shading.show_object_outline for _, _, space in views]
 
 
-def test_outlines_are_there_again_whatever_ends_the_work():
+def test_outlines_are_restored_at_every_end_of_the_work():
     """No undo restores a view's settings."""
     views = [space.shading for _, _, space in common.part("sculpt.chunks").views()]
     for shading, on in zip(views, [True, False] * len(views), strict=False):

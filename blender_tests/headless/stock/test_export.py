@@ -37,7 +37,7 @@ def test_a_surface_is_written_in_the_operators_format_and_not_without_a_name():
         )
 
 
-def test_stl_is_in_mm_whatever_the_scene_units_are():
+def test_stl_is_in_mm_for_any_units_of_the_scene():
     for unit, system in ((1000.0, "METRIC"), (1.0, "METRIC"), (10.0, "METRIC"), (304.8, "IMPERIAL"), (1.0, "NONE")):
         bpy.ops.wm.read_homefile()
         bpy.context.scene.unit_settings.system = system

@@ -331,7 +331,7 @@ def autosave_has_the_last_stroke():
     nothing_is_left()
 
 
-def test_an_autosave_of_a_large_sculpt_has_the_last_rest_and_says_so():
+def test_an_autosave_of_a_large_sculpt_has_the_last_rest_and_reports_it():
     name = sculpt()
     run = work(name)
     run.persistence._packing.nbytes = 1e9

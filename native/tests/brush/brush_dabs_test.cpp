@@ -346,7 +346,7 @@ TEST(BrushDabs, KeepAWallThinnerThanThePitchWhereItMovesAlongItsNormal) {
   EXPECT_NEAR(after / before, 1, 0.02);
 }
 
-TEST(BrushDabs, RespectWhatIsProtected) {
+TEST(BrushDabs, LeaveProtectedMaterialUnchanged) {
   const Volume whole = workpiece();
   const Volume kept = test::convex(whole.frame(), {test::HalfSpace::at(Vec3(14, 0, 0), Vec3(1, 0, 0))});
   for (const Kind kind : kAll) {
@@ -361,7 +361,7 @@ TEST(BrushDabs, RespectWhatIsProtected) {
   }
 }
 
-TEST(BrushDabs, CutOffAtTheBoxAndSaySo) {
+TEST(BrushDabs, ReportMaterialThatTheBoxCutsOff) {
   const Frame frame{{Vec3(0), Vec3(20, 20, 10)}, 0.5, "xyz"};
   Volume volume = Volume::block(frame);
   const double full = volume.volume();
@@ -374,7 +374,7 @@ TEST(BrushDabs, CutOffAtTheBoxAndSaySo) {
   expect_sound(dug);
 }
 
-TEST(BrushDabs, RefuseWhatMakesNoSense) {
+TEST(BrushDabs, RefuseBadArguments) {
   Volume volume = workpiece(1), flat = Volume::block({{Vec3(0), Vec3(10)}, 1, "z"});
   const Volume other = workpiece(0.8);
   const auto refused = [&](Volume& v, Pose pose, auto&& change) {

@@ -247,7 +247,7 @@ TEST(PenProtocol, AnotherLengthOrNumberIsRefused) {
   }
 }
 
-TEST(PenProtocol, APenOfAnotherVersionIsRecognisedWhateverElseItsReportHolds) {
+TEST(PenProtocol, APenOfAnotherVersionIsRecognisedFromAnyReport) {
   stress::Random random(6);
   for (int major = 0; major < 256; ++major) {
     if (major == RIFFLER_PEN_PROTOCOL_MAJOR) continue;

@@ -50,7 +50,7 @@ TEST(Quadrics, EndsOfASphereLieOnIt) {
     }
 }
 
-TEST(Quadrics, EndsOfACylinderLieOnItWhateverItsAxis) {
+TEST(Quadrics, EndsOfACylinderLieOnItForAnyAxis) {
   for (const Vec3 axis : {Vec3(0, 0, 1), Vec3(0, -2, 0), Vec3(1, 2, 3), Vec3(1e-12, 0, 1), Vec3(1, 1e-17, 0),
                           Vec3(1e-200, 0, 1), Vec3(1, -1, 1e-300), Vec3(3, 0, 1e-9)})
     for (const Vec3 centre : {Vec3(0), Vec3(1e5, 0.1, -1e5)}) {

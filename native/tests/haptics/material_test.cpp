@@ -9,7 +9,7 @@
 namespace riffler::haptics::material_test {
 namespace {
 
-TEST(Material, NamesWhatAndTheFieldThatIsWrong) {
+TEST(Material, NamesTheObjectAndTheWrongField) {
   const auto message = [](auto change) {
     Material m;
     change(m);

@@ -165,7 +165,7 @@ TEST(ToMesh, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(ToMesh, ReportsProgressAndStopsWhenAsked) {
+TEST(ToMesh, ReportsProgressAndCanBeCancelled) {
   const Volume volume = Volume::block(frame_at(Vec3(0.0), Vec3(8.0), 0.25, "xyz"));
   double last = 0;
   to_mesh(volume, [&](double share) {

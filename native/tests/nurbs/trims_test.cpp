@@ -193,7 +193,7 @@ TEST(TrimmedSurface, HasAMeshWithinTheTolerance) {
   }
 }
 
-TEST(TrimmedSurface, NamesWhatIsWrongWithItsBorders) {
+TEST(TrimmedSurface, NamesErrorsInItsBorders) {
   const auto error = [](const std::vector<Loop>& trims) {
     Patch patch = plane(1);
     patch.trims = trims;

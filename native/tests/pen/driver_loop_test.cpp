@@ -286,7 +286,7 @@ TEST(DriverLoop, APenThatKeptItsPowerKeepsItsHome) {
   EXPECT_TRUE(b.loop.status().sample.homed);
 }
 
-TEST(DriverLoop, StopTellsTheDeviceNotToPush) {
+TEST(DriverLoop, StopEndsTheForceOfTheDevice) {
   Bench b;
   b.push.wrench.force = {0, 0, 1};
   b.run(3);

@@ -242,7 +242,7 @@ def test_wrong_arguments(arguments, message):
 
 
 @needs_occ
-def test_more_triangles_than_fit(files, monkeypatch):
+def test_too_many_triangles_are_refused(files, monkeypatch):
     monkeypatch.setattr(riffler.cad.reading, "MOST_TRIANGLES", 100)
     with pytest.raises(
         riffler.FormatError, match=r"torus\.step: more than 100 triangles within 0\.1 mm.*larger tolerance"

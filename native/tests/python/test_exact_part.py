@@ -147,7 +147,7 @@ def test_trimmed_faces_have_opencascades_distances(files):
 
 
 @needs_occ
-def test_names_and_places_come_along(files):
+def test_names_and_places_of_the_file_are_kept(files):
     surface, part = riffler.Surface.read(files / "assembly.step"), riffler.cad.read(files / "assembly.step")
     assert surface.names == [face.name for face in part.faces]
     _, _, distance = surface.closest(part.mesh.vertices)

@@ -32,7 +32,7 @@ def near(value, wanted, share):
 def brushes(out):
     """The falloff's integral over the disc: 0.3 of its area."""
     near(numbers(r"one dab of clay: ([\d.]+) mm³", out)[0], 0.3 * np.pi * 49, 2e-3)
-    made, said = numbers(r"volume ([-+\d.]+) mm³, the brushes say ([-+\d.]+) mm³", out)
+    made, said = numbers(r"volume ([-+\d.]+) mm³, the brushes report ([-+\d.]+) mm³", out)
     near(made, said, 1e-3)
     assert "open edges 0, clipped False" in out
 

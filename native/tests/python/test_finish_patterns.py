@@ -169,7 +169,7 @@ def test_waterline_goes_down_a_wall_without_lifting_the_tool():
     assert (op.kind == 0).sum() <= 6
 
 
-def test_waterline_without_cuts_says_why():
+def test_waterline_without_cuts_gives_the_reason():
     walls = [((0, 0), (30, 30), 0, 4), ((0, 0), (30, 13), 4, 12), ((0, 17), (30, 30), 4, 12)]  # a slot of 4 mm
     boxes = [riffler.Volume.block((*a, low), (*b, high), 5, "xyz").to_mesh() for a, b, low, high in walls]
     vertices = np.concatenate([np.asarray(m.vertices) for m in boxes])
@@ -189,7 +189,7 @@ def test_waterline_without_cuts_says_why():
         finished(part, FLAT, "waterline", degrees(0, 1))
 
 
-def test_waterline_says_that_it_leaves_level_faces():
+def test_waterline_reports_the_level_faces_that_it_leaves():
     op = finished(dome(), BALL, "waterline", (0.0, UPRIGHT))
     (flat,) = [b for b in op.report.blocked if "flatter than 3°" in b.reason]
     assert flat.length > 50

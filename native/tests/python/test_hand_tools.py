@@ -141,7 +141,7 @@ def test_a_standing_tool_removes_its_own_body():
         assert volume.volume == pytest.approx(4000 - 32, abs=1e-9)
 
 
-def test_straight_moves_are_exact_whatever_the_tolerance():
+def test_straight_moves_are_exact_for_any_tolerance():
     cuts = [block().carve(CHISEL, STRAIGHT, tolerance=t).removed[0] for t in (1e-4, 1)]
     assert cuts[0] == cuts[1] > 100
 

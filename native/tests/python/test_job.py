@@ -232,7 +232,7 @@ def test_errors_of_planners_name_the_key_with_its_line(folder, change, message):
         ("lower = [100, 100, 0]\nupper = [120, 120, 9]", "part: outside of the stock, x from 0 to 20 mm"),
     ],
 )
-def test_a_stock_that_does_not_fit_is_told_by_a_dry_run(folder, more, message):
+def test_a_stock_that_does_not_fit_is_reported_by_a_dry_run(folder, more, message):
     changed(folder, ("sides = 2", more))
     done = riffle("job", "hill.toml", "--dry-run", cwd=folder)
     assert done.returncode == 2 and message in done.stderr and len(done.stderr.splitlines()) == 1
@@ -249,7 +249,7 @@ def test_an_empty_file_and_no_operation(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["cylinder", "mesh", "volume"])
-def test_other_stocks(folder, kind):
+def test_a_job_takes_every_kind_of_stock(folder, kind):
     block = riffler.Volume.block((-1, -1, 0), (21, 21, 12), 0.5)
     block.to_mesh().write(folder / "blank.stl")
     block.save(folder / "blank.rvol")
@@ -358,7 +358,7 @@ def test_a_tool_library_of_fusion(folder, packed):
 
 @pytest.mark.parametrize("text", ["", "[1]", '{"data": 3}', "\x00\x01"])
 @pytest.mark.parametrize("suffix", [".json", ".tools"])
-def test_what_is_no_library_is_told(tmp_path, suffix, text):
+def test_a_file_that_is_no_library_is_reported(tmp_path, suffix, text):
     path = tmp_path / f"a{suffix}"
     path.write_text(text)
     with pytest.raises(ValueError, match=f"a{suffix}: no tool library of Fusion"):
@@ -380,7 +380,7 @@ def test_the_example_runs(tmp_path):
     assert called == ["T1", "T4", "T7", "T1"]
 
 
-def test_a_job_may_come_from_several_sides(folder):
+def test_a_job_may_have_operations_from_several_sides(folder):
     path = changed(
         folder,
         ("pitch = 0.4", 'pitch = 0.5\ndirections = "xyz"'),

@@ -34,7 +34,7 @@ def cut(op, top=7.5):
     return heights, thick, widths
 
 
-def test_an_outside_cut_that_turns_into_an_inner_corner_is_as_wide_as_asked():
+def test_an_outside_cut_that_turns_into_an_inner_corner_is_as_wide_as_requested():
     part = carved(((10, 8, 2), (27, 21, 8)))  # an L seen from above, with an inner corner of 90°
     op = plan.rough(plan.Setup(part, stock()), FLAT, stepdown=5, engagement=0.3, allowance=0.2)
     heights, _, (widths, lengths) = (lambda h, t, w: (h, t, w.T))(*cut(op))

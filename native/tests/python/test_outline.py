@@ -112,7 +112,7 @@ def test_climb_has_the_part_on_the_right():
         assert nearer.mean() > 0.99 if climb else nearer.mean() < 0.01
 
 
-def test_layers_are_as_high_as_asked_and_ramps_as_steep():
+def test_layers_are_as_high_as_requested_and_ramps_as_steep():
     op = plan.outline(plan.Setup(PLATE, stock()), FLAT, stepdown=2.5, slope=math.radians(4))
     assert op.report.stats["levels"] == 2 * 3  # 6 mm and one ray's distance, in layers of at most 2.5 mm
     way = np.diff(op.poses[:, :3], axis=0)
@@ -190,7 +190,7 @@ def test_a_fixture_is_kept_clear_of():
         (FLAT, {"curves": [[(95, 5, 4), (99, 5, 4), (99, 9, 4)]], "depth": 1}, "no stock stands on the outline"),
     ],
 )
-def test_an_outline_without_cuts_says_why(tool, more, reason):
+def test_an_outline_without_cuts_gives_the_reason(tool, more, reason):
     op = plan.outline(plan.Setup(PLATE, stock()), tool, **more)
     assert len(op) == 0 and reason in op.reason
 
@@ -304,7 +304,7 @@ def test_a_pencil_operation_cuts_the_valley_and_no_deeper():
     assert setup.stock.volume < setup.stock_before(op).volume
 
 
-def test_a_part_without_valleys_says_so():
+def test_a_part_without_valleys_is_reported():
     block = riffler.Volume.block((0, 0, 0), (10, 10, 5), 1, "xyz").to_mesh()
     op = plan.pencil_operation(
         plan.Setup(block, riffler.Volume.block((0, 0, 0), (10, 10, 5), 0.5)), riffler.Tool.ball(4, 20)

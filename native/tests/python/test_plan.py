@@ -53,7 +53,7 @@ def leaning(angle):
 # ---- paths and their orientations
 
 
-def test_a_path_gives_back_what_it_was_made_of():
+def test_a_path_keeps_the_arrays_that_it_was_made_from():
     path = corner(5, closed=True)
     assert len(path) == 5 and path.closed and path.radius == 3
     assert path.contacts.shape == (5, 2, 3) and np.array_equal(path.contacts[:, 0, 2], np.zeros(5))
@@ -245,7 +245,7 @@ def test_cutter_locations_go_into_a_program():
     assert np.allclose(program.poses[1:-1], cl)
 
 
-def test_cutter_locations_lift_over_a_fixture_and_say_so():
+def test_cutter_locations_lift_over_a_fixture_and_report_it():
     tool = riffler.Tool.ball(6, 30)
     clamp = riffler.Volume.block((1, -2, 0), (20, 2, 6), 0.5)
     collider = riffler.Collider(mesh(FLOOR), fixtures=[clamp])
@@ -482,7 +482,7 @@ def test_paths_that_are_off_read_back_as_off():
         plan.dumps(replace(before, off=frozenset({0, 2})))
 
 
-def test_the_error_of_a_newer_plan_says_so():
+def test_a_newer_plan_is_refused_as_newer():
     data = plan.dumps(some_plan()).replace(b'"version": 1', b'"version": 3')
     with pytest.raises(riffler.FormatError, match=r"^plan: version: 1 or 2 expected, not 3: a newer Riffler wrote it$"):
         plan.loads(data)

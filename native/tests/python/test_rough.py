@@ -103,7 +103,7 @@ def test_no_move_is_below_part_and_allowance(roughed):
     assert judge.z.min() >= -1e-9
 
 
-def test_cuts_are_as_wide_as_asked(roughed):
+def test_cuts_are_as_wide_as_requested(roughed):
     _, _, op, judge = roughed
     assert 0.2 < op.report.largest_engagement <= 0.4 + 1e-9
     widths, lengths = np.array(judge.widths).T
@@ -199,7 +199,7 @@ def slotted(width: float) -> riffler.Mesh:
 
 @pytest.mark.parametrize(("width", "entry"), [(7.5, "ramps"), (20, "helices")])
 @pytest.mark.parametrize("slope", [0.008, 0.1])
-def test_slots_are_entered_by_what_fits_and_never_steeper_than_asked(width, entry, slope):
+def test_slots_are_entered_where_there_is_room_and_never_steeper_than_requested(width, entry, slope):
     setup = plan.Setup(slotted(width), stock())
     op = plan.rough(setup, riffler.Tool.flat(diameter=6, length=25), stepdown=3, allowance=0.2, slope=slope)
     assert op.report.stats[entry] == op.report.stats["levels"] > 0 and not op.report.blocked

@@ -151,7 +151,7 @@ def test_it_is_the_same_for_any_number_of_threads(monkeypatch):
         ({"removal_rate": 900, "tools": {}}, None),
     ],
 )
-def test_what_cannot_be_is_named(wrong, text):
+def test_impossible_limits_are_named(wrong, text):
     if text is None:
         program = riffler.Program([(0, 8, 6, 0, 0, 1), (9, 8, 6, 0, 0, 1)], feed=100, tool=4)
         with pytest.raises(ValueError, match="tool 4 of row 1 has no known shape; give it in tools"):

@@ -125,7 +125,7 @@ def test_swarf_keeps_the_walls_that_the_flank_fits_with_a_note():
     ]
 
 
-def test_swarf_without_a_wall_says_why():
+def test_swarf_without_a_wall_gives_the_reason():
     part = step()
     (path,) = plan.pencil(part, BALL)
     away = plan.PencilPath(3.0, path.centres + np.array([0, -1, 1]), path.contacts, path.normals)
@@ -225,7 +225,7 @@ def test_locations_of_poses_are_those_of_the_path():
         plan.cutter_locations([[0, 0, 0, 0, 0, 2]], BALL, collider)
 
 
-def test_an_engraved_plan_becomes_code_that_cuts_as_deep_as_it_says(folder, capsys):
+def test_an_engraved_plan_becomes_code_that_cuts_to_its_depth(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
     assert main(["nc", "post", "out.json", "--post", "tcp", "--out", "plain.ngc", "--json"]) == 0
     assert (

@@ -226,7 +226,7 @@ def test_rest_is_reported_where_there_is_none():
     setup = setup_of(part, pitch=0.3)
     setup.apply(plan.finish(setup, tool, cusp=0.03, tolerance=0.02))
     op = plan.finish(setup, tool, rest=0.5, cusp=0.03, tolerance=0.02)
-    assert len(op) == 0 and op.reason == "nowhere on the part stands more than 0.5 mm of material that the tool reaches"
+    assert len(op) == 0 and op.reason == "no material thicker than 0.5 mm stands on the part where the tool reaches"
     with pytest.raises(ValueError, match=r"^reference_tool: needs rest"):
         plan.finish(setup, tool, reference_tool=tool)
     with pytest.raises(ValueError, match=r"^rest: give either rest or curves as region"):

@@ -41,7 +41,7 @@ def test_a_block_has_the_rays_and_spans_of_the_contract():
         assert np.array_equal(spans, np.tile(ends, (counts.size, 1)))
 
 
-def test_rays_stand_where_the_contract_says():
+def test_rays_stand_at_the_documented_places():
     """A slanted plane's height identifies each ray by its place."""
     mesh = box_mesh([0, 0, 0], [4, 3, 2])
     vertices = np.array(mesh.vertices)

@@ -161,7 +161,7 @@ TEST(JournalModes, OfBrushesAreReplayedToTheByte) {
     changed += clay.volume.volume() != before;
     j.add_stroke(dabs);
   }
-  EXPECT_GE(changed, 6) << "of the places, some are no surface's";
+  EXPECT_GE(changed, 6) << "some of the places are not on a surface";
   const Journal read = parse_journal(to_bytes(j), "j");
   EXPECT_EQ(read.strokes()[3].strength, 0.45);
   EXPECT_EQ(read.strokes()[3].amount, 0.3);

@@ -8,7 +8,7 @@
 namespace riffler::stress::stability_test {
 namespace {
 
-TEST(WallSimulation, MovesAFreeDeviceAsTheClosedFormSays) {
+TEST(WallSimulation, MovesAFreeDeviceAsInClosedForm) {
   // m ẍ + b ẋ = 0 and m ẍ + k x = 0.
   WallSimulation coasts(wall_device(2e-4, 1e-3), {}, {{1.0}});
   coasts.place({0.0}, {100.0});

@@ -46,8 +46,7 @@ class Collider {
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings);
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures = {}) : Collider(part, std::move(fixtures), {}) {}
   /// The same for an exact surface, whose normals point out of the material. Depth and clearance are those of the exact
-  /// surface to 1e-6 mm, and the points of the force lie on it. `sweep` is
-  /// described below.
+  /// surface to 1e-6 mm, and the points of the force lie on it. See `sweep` for motions.
   explicit Collider(const nurbs::Surface& part, std::vector<Volume> fixtures, const Settings& settings);
   explicit Collider(const nurbs::Surface& part, std::vector<Volume> fixtures = {})
       : Collider(part, std::move(fixtures), {}) {}
@@ -88,8 +87,8 @@ class Collider {
 
   /// Whether the clearance to part and fixtures stays at least `wanted` (mm) along a motion whose two end poses touch
   /// no fixture. Gives up after `most` evaluations and answers Unknown. For an exact surface, the clearances found are
-  /// too small by at most 4e-5 of the part's size: Clear is proven, but a motion that keeps less than that more than
-  /// `wanted` may be reported as Gouges.
+  /// too small by at most 4e-5 of the part's size: Clear is proven, but a motion may be reported as Gouges although its
+  /// clearance exceeds `wanted` by up to that much.
   Swept sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const;
 
   /// Whether `p` lies in the part's material, by its winding number (collide/winding.hpp). Needed for a tool entirely

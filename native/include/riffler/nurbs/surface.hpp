@@ -63,7 +63,7 @@ class Surface {
   /// million triangles are necessary.
   Mesh to_mesh(double tolerance, const Progress& progress = {}) const;
 
-  /// For what builds on the patches' Bézier form.
+  /// For code that uses the patches' Bézier form.
   const SurfaceCore& core() const { return *core_; }
 
  private:

@@ -25,8 +25,8 @@ struct FinishOptions {
   bool climb = true;                        ///< waterline: whether the part lies to the motion's right
   double feed = 1000;                       ///< feed of cuts and links, mm/min
   double plunge = 300;                      ///< feed of leads, mm/min
-  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0: none; none: a half of the
-                                 ///< cutter's radius
+  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0 makes no arcs; without a
+                                 ///< value, half the cutter's radius
 };
 
 /// The operation, and counts.

@@ -26,8 +26,8 @@ struct OutlineOptions {
   bool climb = true;        ///< whether the part lies to the right of the motion
   double feed = 1000;       ///< feed of cuts, mm/min
   double plunge = 300;      ///< feed of leads, mm/min
-  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0: none; none: a half of the
-                                 ///< cutter's radius
+  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0 makes no arcs; without a
+                                 ///< value, half the cutter's radius
 };
 
 /// The operation, and counts of loops cut, layers in them, tabs that stay, links over the clearance plane, leads that

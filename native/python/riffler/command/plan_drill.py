@@ -26,10 +26,10 @@ HELP = "drill holes, as NC code"
 def add_arguments(parser: Parser) -> None:
     add_tool(parser)
     parser.add_argument("--at", metavar="X,Y,Z", action="append", default=[], help="mouth of a hole; may be repeated")
-    parser.add_file("--points", "a file of them", plan.curves.FORMATS)
-    parser.add_argument("--depth", metavar="MM", required=True, help="of the tip below the mouth")
-    parser.add_argument("--peck", metavar="MM", help="the drill leaves the hole after each")
-    add_lengths(parser, ("--tolerance", "0.05", "by which the drill may enter the part"))
+    parser.add_file("--points", "file of mouths of holes", plan.curves.FORMATS)
+    parser.add_argument("--depth", metavar="MM", required=True, help="depth of the tip below the mouth")
+    parser.add_argument("--peck", metavar="MM", help="depth of a peck, after which the drill leaves the hole")
+    add_lengths(parser, ("--tolerance", "0.05", "depth to which the drill may enter the part"))
     add_scene(parser, "200")
 
 

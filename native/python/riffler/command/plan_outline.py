@@ -25,19 +25,19 @@ HELP = "cut a part out along its silhouette, as NC code"
 def add_arguments(parser: Parser) -> None:
     add_tool(parser)
     parser.add_file("--curves", "closed curves instead of the silhouette", plan.curves.FORMATS)
-    parser.add_argument("--inside", action="store_true", help="the tool runs within the curves")
-    parser.add_argument("--depth", metavar="MM", help="of the tip below the top (default: through the stock)")
-    parser.add_argument("--tabs", metavar="N", help="bridges that stay along each loop")
+    parser.add_argument("--inside", action="store_true", help="keep the tool inside the curves")
+    parser.add_argument("--depth", metavar="MM", help="depth of the tip below the top (default: through the stock)")
+    parser.add_argument("--tabs", metavar="N", help="number of bridges that stay along each loop")
     add_lengths(
         parser,
         ("--stepdown", "2", "height of a layer"),
-        ("--tab-height", "1", "of a bridge"),
-        ("--tab-width", "4", "of a bridge along the loop"),
-        ("--allowance", "0", "that stays on the part"),
-        ("--tolerance", "0.01", "by which more may stay"),
+        ("--tab-height", "1", "height of a bridge"),
+        ("--tab-width", "4", "length of a bridge along the loop"),
+        ("--allowance", "0", "material to leave on the part"),
+        ("--tolerance", "0.01", "largest error: more material may stay by this much"),
     )
-    parser.add_argument("--slope", metavar="DEG", default="3", help="of ramps (default 3)")
-    parser.add_argument("--conventional", action="store_true", help="part to the left of the motion")
+    parser.add_argument("--slope", metavar="DEG", default="3", help="slope of ramps (default 3)")
+    parser.add_argument("--conventional", action="store_true", help="mill with the part to the left of the motion, not climb")
     add_lead(parser)
     add_scene(parser, "1000")
 

@@ -123,7 +123,7 @@ def finish(
             raise ValueError("rest: give either rest or curves as region; a region of triangles may be combined")
         curves = rest_region(setup, tool, rest, allowance=allowance, reference_tool=reference_tool)
         if not curves:
-            nothing = f"nowhere on the part stands more than {rest:g} mm of material that the tool reaches"
+            nothing = f"no material thicker than {rest:g} mm stands on the part where the tool reaches"
             return Operation(np.zeros((0, 6)), np.zeros(0, np.uint8), np.zeros(0), tool, OperationReport(), nothing,
                              float(spindle), float(tolerance))  # fmt: skip
     found = _core.finish(

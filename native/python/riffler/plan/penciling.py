@@ -115,6 +115,6 @@ def pencil_operation(
         moves.retract()
     reason = found.reason or (blocked[0].reason if blocked else "there is no valley")
     if rest is not None and found and not blocked:
-        reason = f"in no valley stands more than {rest:g} mm of material"
+        reason = f"no valley has more than {rest:g} mm of material"
     stats = {"paths": len(found), "pieces": len(cuts), "retracts": max(0, len(cuts) - 1)}
     return moves.operation(tool, blocked, reason, stats, spindle, tolerance)

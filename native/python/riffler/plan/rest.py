@@ -1,4 +1,4 @@
-"""Rest: the areas of a part where material still stands that a tool can reach, as closed curves seen along an axis."""
+"""Rest material: the areas of a part where a tool can still remove some, as closed curves seen along an axis."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ def rest_region(
     orientation: ArrayLike | None = None,
     reference_tool: Tool | None = None,
 ) -> list[NDArray[np.float64]]:
-    """Closed curves around the areas where more material than wanted stands on the part and the tool can cut it.
+    """Returns closed curves around the rest material that the tool can cut.
 
-    For `finish`, whose argument ``rest`` calls this. Material counts where its surface is farther than
-    ``allowance`` + ``above`` from the part, lies over the part, is not hidden under other material, and the tool would
-    cut half of ``above`` of it. The curves run along the sides of cells, and go one cell beyond.
+    The argument ``rest`` of `finish` calls this function. A place of the stock's surface counts if it is farther than
+    ``allowance`` + ``above`` from the part, lies over the part and not under other material, and if the tool would cut
+    at least half of ``above`` there. The curves run along the sides of cells, one cell outside of these places.
 
     Parameters
     ----------
@@ -49,12 +49,13 @@ def rest_region(
     orientation : array_like, shape (3,), optional
         Unit vector from tip to spindle; by default the set-up's axis.
     reference_tool : Tool, optional
-        A tool that has been everywhere on the part with the same allowance along the same axis. Its rest is taken
-        instead of the set-up's stock.
+        A tool that has finished the whole part, with the same allowance, along the same axis. The material that it
+        would leave counts instead of the set-up's stock.
+
     Returns
     -------
     list of ndarray, shape (k, 3)
-        Closed curves in the part's frame; the inside of an odd number of them is the region. Empty if nothing stands.
+        Closed curves in the part's frame; the inside of an odd number of them is the region. Empty without rest material.
 
     Examples
     --------
@@ -145,8 +146,8 @@ def _normals(points: Grid, triangles: NDArray[np.int32]) -> Grid:
 def _reached(
     tool: Tool, setup: Setup, above: float, allowance: float, points: Grid, normals: Grid, frame: Grid
 ) -> NDArray[np.bool_]:
-    """Which points of the stock's surface over the part the cutter enters by at least half of ``above``, in one of
-    three places: next to the point as far as the normal asks, half as far, and above it."""
+    """Which points of the stock's surface over the part the cutter enters by at least half of ``above``, at one of
+    three places: as far next to the point as its normal requires, half as far, and above the point."""
     radii, rises = _lower_side(tool)
     slopes = np.arctan2(np.diff(rises), np.diff(radii))
     steep = np.arccos(np.clip(normals[:, 2], 0, 1))

@@ -95,7 +95,7 @@ class Setup:
         return list(self._obstacles)
 
     def along(self, orientation: ArrayLike | None) -> Setup:
-        """This set-up with the tool along another direction. Both have the present stock.
+        """This set-up with the tool along another direction, on the stock in its present state.
 
         Parameters
         ----------

@@ -22,7 +22,7 @@ Heights heights(const DrillCycle& cycle) {
   return out;
 }
 
-TEST(DrillCycle, MovesAsItsCodeSays) {
+TEST(DrillCycle, MovesAsItsCodeDescribes) {
   EXPECT_EQ(heights({810, 2, -5, 2, 0}), (Heights{{-5, false}, {2, true}}));
   EXPECT_EQ(heights({810, 2, -5, 10, 0}), (Heights{{-5, false}, {10, true}}));
   EXPECT_EQ(heights({850, 2, -5, 10, 0}), (Heights{{-5, false}, {2, false}, {10, true}}));

@@ -66,7 +66,7 @@ double steepest(const std::vector<Vec3>& way) {
   return most;
 }
 
-TEST(Entry, IsNeverSteeperThanAsked) {
+TEST(Entry, IsNeverSteeperThanRequested) {
   const Entry helix{{{1, 2}}, 1.5}, ramp{{{0, 0}, {3, 0}, {4, 1}}, 0};
   for (const double slope : {0.005, 0.05, 0.5})
     for (const Entry& entry : {helix, ramp}) {

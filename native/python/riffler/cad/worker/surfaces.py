@@ -27,8 +27,8 @@ DEEPEST = 14  # halvings of each of them
 
 
 def convert(healed: Healed, tolerance: float) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Returns a record for each face, and arrays of which each record uses the next rows: points with weights (n, 4),
-    knots (n,), and borders (n, 2)."""
+    """Returns a record for each face, and arrays whose rows the records use one after the other: points with weights
+    (n, 4), knots (n,), and borders (n, 2)."""
     records: list[dict[str, Any]] = []
     points: list[np.ndarray] = []
     knots: list[np.ndarray] = []
@@ -123,8 +123,8 @@ def _loops(face: Any, surface: Any, tolerance: float) -> list[np.ndarray]:
 
 
 def _edge(edge: Any, face: Any, surface: Any, tolerance: float) -> list[tuple[float, float]]:
-    """Parameters along an edge in the direction of its wire, so close that straight lines between them are within the
-    tolerance where they are measured, in their middles."""
+    """Parameters along an edge in the direction of its wire, so close together that the middle of each straight line
+    between them is within the tolerance."""
     first, last = BRep_Tool.Range_s(edge, face)
     curve = BRep_Tool.CurveOnSurface_s(edge, face, first, last)
     if curve is None:
