@@ -28,7 +28,8 @@ constexpr double kGridShare = 0.05;       // of the progress, for each grid
 constexpr int kFiner = 2;                 // how often the grid is made finer by kFinerBy for narrow places
 constexpr double kFinerBy = 4, kMostFine = 1e6;  // places of a finer grid
 constexpr double kMostSamples = 16;              // on the upper edge of a wall's triangle
-constexpr const char* kNarrow = "waterline: holes and slots only slightly wider than the tool are left out; take a smaller one";
+constexpr const char* kNarrow =
+    "waterline: holes and slots only slightly wider than the tool are left out; take a smaller one";
 constexpr const char* kFlat = "waterline: faces flatter than 3° are left to another pattern";
 
 /// Spacing of a grid that is fine enough to tell one curve from another, mm.

@@ -357,6 +357,7 @@ CHECKS: dict[str, Callable[[object], bool]] = {
     "SupportsFloat": _is_number,
     "float": _is_number,
     "SupportsInt": lambda v: hasattr(v, "__index__"),
+    "SupportsIndex": lambda v: hasattr(v, "__index__"),
     "int": lambda v: hasattr(v, "__index__"),
     "bool": lambda v: isinstance(v, bool) or type(v).__name__ in ("bool", "bool_"),
     "str": lambda v: isinstance(v, str),

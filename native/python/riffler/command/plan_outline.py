@@ -37,7 +37,9 @@ def add_arguments(parser: Parser) -> None:
         ("--tolerance", "0.01", "largest error: more material may stay by this much"),
     )
     parser.add_argument("--slope", metavar="DEG", default="3", help="slope of ramps (default 3)")
-    parser.add_argument("--conventional", action="store_true", help="mill with the part to the left of the motion, not climb")
+    parser.add_argument(
+        "--conventional", action="store_true", help="mill with the part to the left of the motion, not climb"
+    )
     add_lead(parser)
     add_scene(parser, "1000")
 

@@ -55,7 +55,7 @@ def rest_region(
     Returns
     -------
     list of ndarray, shape (k, 3)
-        Closed curves in the part's frame; the inside of an odd number of them is the region. Empty without rest material.
+        Closed curves in the part's frame; the region is inside an odd number of them. Empty without rest material.
 
     Examples
     --------
