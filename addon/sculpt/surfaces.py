@@ -1,6 +1,6 @@
 """The surface that a sculpt's own mesh shows: the triangles that its shape needs, or two for each cell of the surface.
 
-What colours or marks vertices and faces needs all of them: a flat face has only a few when they are left out.
+Colours of vertices and marks of faces need all triangles, because a flat face otherwise has only a few vertices.
 """
 
 from dataclasses import dataclass
@@ -14,13 +14,14 @@ DETAIL = (
     ("NEEDED", "As Needed", "Triangles where the shape needs them: a flat face has few"),
     ("ALL", "All", "Two triangles for each cell of the surface"),
 )
-SHARE = 0.1  # of the pitch: how far the triangles that are needed may be from all of them
+SHARE = 0.1  # largest distance of the needed triangles from the mesh of all triangles, as a share of the pitch
 
 
 @dataclass
 class Surface:
     """Vertices (V, 3) mm and triangles (F, 3); `shading`, the arguments of meshes.fill that give the mesh the normals
-    of all triangles. `within`: mm that it may be from all triangles, `all_triangles` in number; None: it has all."""
+    of all triangles. `within`: largest distance from the mesh of all triangles, mm; None: it has all of them.
+    `all_triangles`: their number."""
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -30,8 +31,8 @@ class Surface:
 
 
 def within(detail, pitch, mask=None):
-    """mm that the triangles that a sculpt shows may be from all of them; None: all are shown, as the user wants it
-    (`detail`), to mark those under the mask, or since this Blender takes no normals for large ones."""
+    """Largest distance, in mm, of a sculpt's displayed triangles from the mesh of all triangles. None: it shows all of
+    them, because the user chose that (`detail`), to mark the mask, or because this Blender takes no custom normals."""
     return None if detail == "ALL" or mask is not None or not versions.OWN_NORMALS else SHARE * pitch
 
 
@@ -44,7 +45,7 @@ def of_volume(volume, tolerance, progress=None):
 
 
 def of_mesher(mesher):
-    """The same of a mesher with a tolerance."""
+    """The same for a mesher with a tolerance."""
     patch = mesher.patch(mesher.patches(), edges=True, normals=meshes.SHARP_ANGLE)
     shading = {"edges": [patch.edges, patch.corner_edges], "normals": patch.normals}
     return Surface(patch.vertices, patch.triangles, shading, mesher.tolerance, mesher.all_triangles)

@@ -200,6 +200,8 @@ class RifflerMesh(bpy.types.PropertyGroup):
     nbytes: FloatProperty()
     cuts: IntProperty()
     moves: IntProperty()
-    detail: EnumProperty(name="Triangles", items=DETAIL, default="NEEDED", description="What the sculpt's mesh has")
-    shown_within: FloatProperty(description="How far the triangles may be from all of them, in mm; 0: all are there")
-    all_triangles: IntProperty(description="How many all are; 0 in files of older add-ons, which show all")
+    detail: EnumProperty(
+        name="Triangles", items=DETAIL, default="NEEDED", description="The triangles that the sculpt's mesh has"
+    )
+    shown_within: FloatProperty(description="Largest distance from the mesh of all triangles, in mm; 0: it has all")
+    all_triangles: IntProperty(description="Number of all triangles; 0 in files of older add-ons, which show all")

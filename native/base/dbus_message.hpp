@@ -1,4 +1,4 @@
-// Messages of D-Bus, as far as a client needs them that calls methods: strings and numbers.
+// Messages of D-Bus, the part that a client needs to call methods: strings and numbers.
 // The format is that of https://dbus.freedesktop.org/doc/dbus-specification.html, version 1 of the protocol.
 #pragma once
 
@@ -29,7 +29,7 @@ class DbusWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Reads values; what does not fit makes all later reads fail, too.
+/// Reads values. After a value that does not fit, all later reads fail.
 class DbusReader {
  public:
   explicit DbusReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

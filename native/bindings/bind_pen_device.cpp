@@ -1,4 +1,4 @@
-// riffler.pen: what is plugged in, and a device that is open.
+// riffler.pen: plugged-in devices, and an open device.
 #include <array>
 #include <memory>
 #include <optional>
@@ -135,7 +135,7 @@ PushResult push(pen::Pen& pen, const ArrayLike& force, const ArrayLike& torque) 
   return pen_result("PushResult", out);
 }
 
-/// A sample, and how old it was when it was asked for.
+/// A sample, and its age at the time of the query.
 struct State {
   pen::PenSample sample;
   double age;

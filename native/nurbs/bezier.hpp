@@ -32,7 +32,7 @@ inline Vec3 affine(const Vec4& h) {
 struct Jet4 {
   Vec4 s, u, v, uu, uv, vv;
 };
-/// The same of the rational surface.
+/// The same for the rational surface.
 struct Jet3 {
   Vec3 s, u, v, uu, uv, vv;
 };

@@ -10,7 +10,7 @@ struct SecondDerivatives {
   double uu = 0, uv = 0, vv = 0;
 
   /// Upper bound of the distance, mm, between surface and triangle at the same parameters, for any triangle whose
-  /// corners are points of the surface with parameters in a rectangle of these sides. For the error of linear
+  /// corners are points of the surface with parameters in a rectangle of these sides. Proof: the error of linear
   /// interpolation is ½ Σ λ S''(dᵢ, dᵢ) with barycentric weights λ of the corners, dᵢ from the point to them, and the
   /// variance Σ λ dᵢ² of numbers in an interval is at most a quarter of its squared length. The bound for right
   /// triangles is that of Filip, Magedson & Markot, CAGD 3 (1986) 295.

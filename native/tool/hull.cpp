@@ -58,7 +58,7 @@ bool same_face(const HalfSpace& f, const HalfSpace& g) {
   return glm::dot(f.normal, g.normal) > 0 && glm::length(glm::cross(f.normal, g.normal)) < 1e-8;
 }
 
-/// Each face once, by the widest three points that span it: what its plane owes to rounding is then least.
+/// Each face once, by the widest three points that span it: rounding then changes its plane least.
 std::vector<HalfSpace> faces_of(std::span<const Vec3> points, double size) {
   std::vector<Candidate> found;
   for (std::size_t a = 0; a < points.size(); ++a)
@@ -78,7 +78,7 @@ std::vector<HalfSpace> faces_of(std::span<const Vec3> points, double size) {
   return out;
 }
 
-/// The least extent of the points across a face: they are no thinner in any other direction by much.
+/// The least extent of the points across a face: they are hardly thinner in any other direction.
 double thickness(std::span<const Vec3> points, const std::vector<HalfSpace>& faces, double size) {
   double least = size;
   for (const HalfSpace& f : faces) {

@@ -10,8 +10,8 @@
 
 namespace riffler::collide {
 
-/// Sums the contact from the rays under the tool, with nothing prepared: what a cut has just left is felt by the next
-/// query. Shank and holder do not touch, as they do not cut. No function allocates or waits.
+/// Sums the contact from the rays under the tool, without prepared data, so the next query feels the surface that a cut
+/// has just left. Shank and holder do not touch, as they do not cut. No function allocates or waits.
 class StockContact {
  public:
   /// The most boxes of material that one query looks at.
@@ -34,7 +34,7 @@ class StockContact {
   /// against the normal of the cutter's surface nearest to it; the torque about the tip; and the stiffness. Each ray
   /// counts as a column as wide as its cell, so that a wall along the rays pushes evenly, too. Where there are three
   /// grids, each counts with the square of the normal's component along its rays: the rays that meet a face squarely
-  /// know best where it is. The force is continuous in the pose, and nearly the gradient of
+  /// locate it best. The force is continuous in the pose, and nearly the gradient of
   /// ∫ stiffness · depth dV, so a closed path gives almost no work. Throws std::invalid_argument for a pose whose tip
   /// is not finite or whose axis is not of unit length (within 1e-6).
   Overlap add(const Volume& stock, const Pose& pose, double stiffness, Contact& contact) const;

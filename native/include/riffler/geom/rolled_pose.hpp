@@ -14,8 +14,8 @@ struct RolledPose {
   Vec3 forward{1, 0, 0};
 };
 
-/// Rotation from the tool's frame: x forward, y across, z along the axis. What the axis and the forward vector lack in
-/// length or in being square is put right; the axis keeps its direction.
+/// Rotation from the tool's frame: x forward, y across, z along the axis. Small deviations of the two vectors from unit
+/// length and from a right angle are corrected; the axis keeps its direction.
 Mat3 frame_of(const RolledPose& pose);
 
 /// The shortest rotation from one frame to another.

@@ -15,7 +15,7 @@ from ..hints import hinted
 def order_paths(paths: Sequence[PencilPath], *, start: ArrayLike | None = None) -> list[tuple[int, bool]]:
     """An order of the paths, and which are reversed, so that the moves between them are short.
 
-    Goes from ``start`` to the nearest end, and on to the nearest end each time; then exchanges two moves as long as
+    Goes from ``start`` to the nearest end of a path, and always on to the nearest end; then exchanges two moves while
     that shortens the travel. The same input gives the same order. A loop begins and ends at its first point.
 
     Parameters
