@@ -8,7 +8,7 @@ import sys
 
 bl_info = {  # Blender before 4.2; later ones read blender_manifest.toml
     "name": "Riffler",
-    "description": "Carve stock as if milling it, take STL and NC code away",
+    "description": "Carve stock as if milling it, export STL files and NC code",
     "author": "The Riffler authors",
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
