@@ -141,12 +141,13 @@ def exported(screen):
     path.unlink(missing_ok=True)
     screen.click(46, screen.window.height - 13)
     yield 0.6
-    row = screen.window.height - (318 if bpy.app.version < (5, 0) else 332)  # of Export in the menu File
+    old = bpy.app.version < (5, 0)
+    row = screen.window.height - (318 if old else 332)  # of Export in the menu File
     screen.move(80, row)
     yield 0.8
     screen.move(307, row)
     yield 0.3
-    screen.move(307, row - 207)
+    screen.move(307, row - (207 if old else 146))  # Riffler STL
     yield from lessons.picture(screen, "first-chip-6")
     for _ in range(3):
         screen.key("ESC")
