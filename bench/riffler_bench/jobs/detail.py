@@ -52,7 +52,7 @@ def measured(folder: Path, scene: str, pitch: float, tolerances: list[float], **
 
 
 def judged(folder: Path, name: str, tolerance: float, out: Report, points: int) -> dict[str, Any]:
-    """Distances both ways at points drawn evenly over both meshes and at vertices, and defects after a binary STL."""
+    """Distances in both directions, at points drawn evenly and at vertices, and defects after a binary STL."""
     full, less = (Mesh(np.load(folder / f"{n}.v.npy"), np.load(folder / f"{n}.t.npy")) for n in ("full", name))
     rng = np.random.default_rng(2)
     with threads(None):
