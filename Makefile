@@ -58,6 +58,7 @@ stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mes
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_history_stress --edits $(or $(EDITS),1000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
+	build/release/native/stress/riffler_mesh_stress --tolerant --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --strokes $(or $(STROKES),10000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
 	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*:LedAlongWalls.*'

@@ -36,7 +36,7 @@ BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
     "arm_program": (["base", "geom", "pen"], []),
     "reference": (["base", "geom", "tool"], []),
     "bench": (None, ["reference"]),
-    "stress": (None, ["reference"]),
+    "stress": (None, ["reference", "bench"]),
     "fuzz": (None, []),
     "bindings": (None, ["bench", "stress"]),
 }

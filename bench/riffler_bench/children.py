@@ -59,6 +59,60 @@ def mesh(pitch: float, directions: str, repeats: int, path: str) -> dict[str, An
     return {**times, "triangles": len(made.triangles)}
 
 
+def detail(
+    scene: str,
+    pitch: float,
+    tolerances: list[float],
+    folder: str,
+    directions: str = "xyz",
+    rays: int = 0,
+    decimated: float = 0.0,
+) -> dict[str, Any]:
+    """A volume's meshes without and with tolerances, which alternate: medians of times. Saves the meshes in `folder`,
+    named full and less-TOLERANCE. `scene`: b200, s500k or an .stl file. `rays`: along the longest side, instead of a
+    pitch; a tolerance of 0 is a tenth of the pitch. `decimated`: also times `decimate` with this tolerance after each
+    kind of mesh."""
+    if scene == "b200":
+        volume = Volume.block(*scenes.BLOCK, pitch, directions)
+        volume.carve(scenes.cutters()[0].tool, scenes.cutters()[0].path(turning=False))
+    elif scene == "s500k":
+        volume = Volume.block([0, 0, 0], [100, 60, 20], 100 / rays, directions)
+        volume.carve(Tool.flat(6, 30), scenes.s500k(20_000, True))
+    else:
+        part = Mesh.read(scene)
+        volume = Volume.from_mesh(part, float(np.ptp(np.asarray(part.bounds), axis=0).max()) / rays, directions)
+    calls: dict[str, Any] = {"full": volume.to_mesh}
+    for tolerance in tolerances:
+        calls[f"less-{tolerance:g}"] = lambda t=tolerance or volume.pitch / 10: volume.to_mesh(tolerance=t)
+    made, rows = alternated(calls, 3)
+    for name, mesh in made.items():
+        np.save(f"{folder}/{name}.v.npy", mesh.vertices)
+        np.save(f"{folder}/{name}.t.npy", mesh.triangles)
+    after = {}
+    if decimated:
+        for way, first in (("to_mesh(), decimate", None), ("to_mesh(tolerance / 2), decimate", decimated / 2)):
+            start = time.process_time()
+            mesh = volume.to_mesh() if first is None else volume.to_mesh(tolerance=first)
+            mesh = mesh.decimate(tolerance=decimated if first is None else decimated / 2)
+            after[way] = {"cpu_s": time.process_time() - start, "triangles": len(mesh.triangles)}
+    full = rows.pop("full")
+    return {"pitch": volume.pitch, "full": full, "rows": list(rows.values()), "decimated": after}
+
+
+def alternated(calls: dict[str, Any], repeats: int) -> tuple[dict[str, Mesh], dict[str, dict[str, Any]]]:
+    """The meshes, and medians of the processor time of calls in turn."""
+    made: dict[str, Mesh] = {}
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(repeats):
+        for name, call in calls.items():
+            start = time.process_time()
+            made[name] = call()
+            times[name].append(time.process_time() - start)
+    return made, {
+        name: {"cpu_s": statistics.median(times[name]), "triangles": len(made[name].triangles)} for name in calls
+    }
+
+
 def rays(path: str, side: int, repeats: int) -> dict[str, Any]:
     """A part to side² rays along z: median times, and the volume."""
     part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
@@ -214,6 +268,7 @@ def files(folder: str) -> dict[str, Any]:
 WORK = {
     "b200": b200,
     "mesh": mesh,
+    "detail": detail,
     "rays": rays,
     "decimate": decimate,
     "pencil": pencil,

@@ -1,7 +1,8 @@
 // A rival: OpenVDB's volumeToMesh of a field that other rivals mesh too. Usage:
-//   riffler_openvdb_mesh FIELD NX NY NZ PITCH X Y Z THREADS REPEATS MESH
+//   riffler_openvdb_mesh FIELD NX NY NZ PITCH X Y Z THREADS REPEATS MESH [ADAPTIVITY]
 // FIELD: float32, z fastest; its first value belongs to (X, Y, Z). Keeps the narrow band of 3 voxels, as in a level
-// set. Writes MESH as MESH.vertices (float32) and MESH.quads (int32), and prints JSON.
+// set. Writes MESH as MESH.vertices (float32), MESH.quads and MESH.triangles (int32), and prints JSON. ADAPTIVITY:
+// OpenVDB's, from 0 (none, the default) to 1.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -50,7 +51,7 @@ void write(const std::string& path, const std::vector<T>& items) {
   if (!out) throw std::runtime_error("cannot write " + path);
 }
 
-int run(char** argv) {
+int run(char** argv, double adaptivity) {
   const auto number = [&](int k) { return std::strtod(argv[k], nullptr); };
   const auto whole = [&](int k) { return static_cast<int>(number(k)); };
   openvdb::initialize();
@@ -58,30 +59,32 @@ int run(char** argv) {
   std::ifstream in(argv[1], std::ios::binary);
   const auto grid = narrow_band(in, {whole(2), whole(3), whole(4)}, number(5), {number(6), number(7), number(8)});
   std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
   std::vector<double> wall, cpu;
   for (int n = 0; n < whole(10); ++n) {
     const riffler::bench::Stopwatch watch;
-    openvdb::tools::volumeToMesh(*grid, points, quads);
+    openvdb::tools::volumeToMesh(*grid, points, triangles, quads, 0.0, adaptivity);
     wall.push_back(watch.wall()), cpu.push_back(watch.cpu());
   }
   write(std::string(argv[11]) + ".vertices", points);
   write(std::string(argv[11]) + ".quads", quads);
+  write(std::string(argv[11]) + ".triangles", triangles);
   std::printf("{\"version\": \"%s\", \"wall_s\": %.9g, \"cpu_s\": %.9g, \"triangles\": %zu, \"peak_bytes\": %.0f}\n",
               OPENVDB_LIBRARY_VERSION_STRING, riffler::bench::median(wall), riffler::bench::median(cpu),
-              2 * quads.size(), riffler::bench::peak_bytes());
+              triangles.size() + 2 * quads.size(), riffler::bench::peak_bytes());
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 12) {
-    std::fputs("riffler_openvdb_mesh FIELD NX NY NZ PITCH X Y Z THREADS REPEATS MESH\n", stderr);
+  if (argc != 12 && argc != 13) {
+    std::fputs("riffler_openvdb_mesh FIELD NX NY NZ PITCH X Y Z THREADS REPEATS MESH [ADAPTIVITY]\n", stderr);
     return 2;
   }
   try {
-    return run(argv);
+    return run(argv, argc > 12 ? std::strtod(argv[12], nullptr) : 0.0);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "riffler_openvdb_mesh: %s\n", e.what());
     return 1;

@@ -33,7 +33,7 @@ float StarCollapser::rounded_up(double x) {
 std::int32_t StarCollapser::seen(std::int32_t v) {
   const std::int32_t s = slot(v);
   if (s != kUnseen) return s;
-  stars_.push_back({v, 0, false, false, 0, 0});
+  stars_.push_back({v, 0, false, false, true, 0, 0, Vec3(0)});
   around_.resize(around_.size() + kMostFaces);
   return slot_[static_cast<std::size_t>(v - first_)] = static_cast<std::int32_t>(stars_.size() - 1);
 }
@@ -48,6 +48,8 @@ void StarCollapser::add(std::uint32_t triangle) {
   for (const std::int32_t s : slots) {
     if (s < 0) continue;
     Star& star = stars_[s];
+    if (star.count == 0) star.facing = faces_.back().normal;
+    if (!(glm::dot(star.facing, faces_.back().normal) > kCalm)) star.calm = false;
     if (star.count == kMostFaces)
       star.locked = true;
     else
@@ -210,6 +212,8 @@ bool StarCollapser::folds(std::int32_t from, const Side& to) const {
   for (int n = 0; n < count_; ++n) {
     const Side& side = sides_[n];
     if (side.a == to.a || side.b == to.a) continue;
+    const std::int32_t slots[2] = {slot(side.a), slot(side.b)};
+    if (is_calm(slots[0]) || is_calm(slots[1])) continue;
     const Vec3 cross = glm::cross(side.pa - to.pa, side.pb - to.pa);
     const double length = glm::length(cross);
     // Looks among the faces around one end of the side for the other end.
@@ -225,19 +229,24 @@ bool StarCollapser::folds(std::int32_t from, const Side& to) const {
       return false;
     };
     bool found = false;
-    if (faces_away(slot(side.a), side.b, found) || (!found && faces_away(slot(side.b), side.a, found))) return true;
+    if (faces_away(slots[0], side.b, found) || (!found && faces_away(slots[1], side.a, found))) return true;
   }
   return false;
 }
 
 bool StarCollapser::keeps_manifold(std::int32_t from, std::int32_t to, std::int32_t x, std::int32_t y) const {
-  // Most of the other vertex's neighbours differ from all of this one's in the last bits.
+  // Most of the other vertex's faces have no vertex that equals one of this one's neighbours in the last bits.
+  const std::int32_t target = stars_[to].vertex;
   std::uint64_t near = 0;
-  for (int n = 0; n < count_; ++n) near |= std::uint64_t{1} << (sides_[n].a & 63);
+  for (int n = 0; n < count_; ++n) {
+    const std::int32_t w = sides_[n].a;
+    if ((w != x) & (w != y) & (w != target)) near |= std::uint64_t{1} << (w & 63);
+  }
   for (int n = 0; n < stars_[to].count; ++n) {
     const Vec3i& v = faces_[around(to)[n]].v;
-    const auto has = [&](std::int32_t w) { return v.x == w || v.y == w || v.z == w; };
-    if (has(x) && has(y)) return false;  // of a tetrahedron
+    const auto has = [&](std::int32_t w) { return (v.x == w) | (v.y == w) | (v.z == w); };
+    if (has(x) & has(y)) return false;  // of a tetrahedron
+    if (!((near >> (v.x & 63) | near >> (v.y & 63) | near >> (v.z & 63)) & 1)) continue;
     for (const std::int32_t w : {v.x, v.y, v.z}) {
       if (!(near >> (w & 63) & 1) || w == x || w == y || w == stars_[to].vertex || w == stars_[from].vertex) continue;
       for (int m = 0; m < count_; ++m)
@@ -332,6 +341,8 @@ void StarCollapser::commit(std::int32_t from, std::int32_t to, double error, dou
     face.normal = glm::normalize(glm::cross(a - p, b - p));
     face.error = bound;
     around(to)[stars_[to].count++] = f;
+    for (const std::int32_t s : {to, slot(side.a), slot(side.b)})
+      if (s >= 0 && !(glm::dot(stars_[s].facing, face.normal) > kCalm)) stars_[s].calm = false;
   }
   const auto again = [&](std::int32_t s) {
     if (s < 0) return;

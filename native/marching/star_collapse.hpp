@@ -56,6 +56,9 @@ class StarCollapser {
   // All old and new triangles are within 60° of the common direction, and a triangle turns by at most 32°, so that
   // sharp edges stay and no two triangles fold onto each other.
   static constexpr double kFacing = 0.5, kTurn = 0.85;
+  // Cosine of 68.2°. A new triangle that folds onto its neighbour, by over 168.5°, is within 31.8° of the old one on
+  // its side, so the old one and the neighbour were over 136.7° apart, and one of them 68.3° from any direction.
+  static constexpr double kCalm = 0.371;
   // Least height of a new triangle over its longest side: enough for a reliable normal.
   static constexpr double kThinnest = 2e-3;
 
@@ -74,8 +77,10 @@ class StarCollapser {
     std::uint8_t count;  // 0: merged into another
     bool locked;         // has more faces than there is room for
     bool queued;
+    bool calm;           // all faces around it, also earlier ones, faced within kCalm of the first one
     std::int32_t stamp;  // the last block that it belonged to
     double needs;        // lower bound of the error of its next merge, mm
+    Vec3 facing;         // normal of the first face
   };
   /// A face around the vertex that is to go: the edge opposite to it, from a to b, relative to the vertex.
   struct Side {
@@ -98,6 +103,7 @@ class StarCollapser {
     return around_.data() + static_cast<std::ptrdiff_t>(s) * kMostFaces;
   }
   std::int32_t seen(std::int32_t v);
+  bool is_calm(std::int32_t s) const { return s >= 0 && !stars_[s].locked && stars_[s].calm; }
   bool gather(std::int32_t from, double limit);
   bool merge(std::int32_t from, double limit, int most_faces);
   struct Flat {

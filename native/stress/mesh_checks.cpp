@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bench/mesh_distance.hpp"
 #include "riffler/marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/thread_count.hpp"
@@ -89,6 +90,25 @@ Problem check_volume(const Volume& volume, const Mesh& mesh) {
   return out.str();
 }
 
+/// The largest distance of points of one mesh from another. Each triangle has its corners and points between them, the
+/// more of them the longer it is compared with the other mesh's triangles.
+double farthest(const Mesh& of, const Mesh& from) {
+  constexpr int kMostSteps = 12;
+  const bench::MeshDistance distance(from);
+  const double step = std::sqrt(area(from) / static_cast<double>(from.triangles.size()));
+  double worst = 0;
+  for (const Vec3& v : of.vertices) worst = std::max(worst, distance(v));
+  for (const Vec3i& t : of.triangles) {
+    const Vec3 &a = of.vertices[t.x], &b = of.vertices[t.y], &c = of.vertices[t.z];
+    const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
+    const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, static_cast<double>(kMostSteps)));
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; i + j < n; ++j)
+        worst = std::max(worst, distance(a + (i + 1.0 / 3) / n * (b - a) + (j + 1.0 / 3) / n * (c - a)));
+  }
+  return worst;
+}
+
 struct Piece {
   std::size_t grid;
   int i, j;
@@ -147,6 +167,49 @@ Problem check_mesh(const Volume& volume, bool threads, std::size_t* triangles) {
   const ThreadCount four("4");
   const Mesh again = marching::to_mesh(volume);
   if (again.vertices != mesh.vertices || again.triangles != mesh.triangles) return "4 threads give another mesh than 1";
+  return {};
+}
+
+Problem check_within(const Mesh& mesh, const Mesh& full, double tolerance) {
+  std::ostringstream out;
+  if (const FloatAudit audit = float_audit(mesh); !audit.clean()) {
+    out << audit;
+    return out.str();
+  }
+  if (mesh.empty() != full.empty() || mesh.triangles.size() > full.triangles.size()) {
+    out << mesh.triangles.size() << " triangles instead of at most " << full.triangles.size();
+    return out.str();
+  }
+  if (full.empty()) return {};
+  // Distances are exact to some ulps of the coordinates.
+  const Box3 box = box_of(full);
+  const Vec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double ulps = 1e-14 * std::max({reach.x, reach.y, reach.z, 1.0});
+  const double there = farthest(mesh, full), back = farthest(full, mesh);
+  if (!(std::max(there, back) <= tolerance + ulps)) {
+    out << "the mesh is up to " << there << " mm from the full one, which is up to " << back
+        << " mm from it; the tolerance is " << tolerance << " mm";
+    return out.str();
+  }
+  // Each point moves by at most the tolerance.
+  const double allowed = area(full) * (tolerance * (1 + 1e-6) + 1e-9), held = enclosed(mesh), expected = enclosed(full);
+  if (std::abs(held - expected) <= allowed) return {};
+  out << "the mesh holds " << held << " mm³, the full one " << expected << " ± " << allowed;
+  return out.str();
+}
+
+Problem check_tolerance(const Volume& volume, double tolerance, bool threads, std::size_t* triangles) {
+  Mesh full, mesh;
+  {
+    const ThreadCount one("1");
+    full = marching::to_mesh(volume), mesh = marching::to_mesh(volume, tolerance);
+  }
+  if (triangles) *triangles = mesh.triangles.size();
+  if (Problem p = check_within(mesh, full, tolerance); !p.empty() || !threads) return p;
+  const ThreadCount four("4");
+  const Mesh again = marching::to_mesh(volume, tolerance);
+  if (again.vertices != mesh.vertices || again.triangles != mesh.triangles)
+    return "with a tolerance, 4 threads give another mesh than 1";
   return {};
 }
 

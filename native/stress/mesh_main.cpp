@@ -31,6 +31,7 @@ void usage() {
       "  --volumes N   (20000)\n"
       "  --seconds N   stops after so many, if that is earlier\n"
       "  --seed N      (1)\n"
+      "  --tolerant    mesh with tolerances, and compare with the mesh without\n"
       "  --strokes N   instead of meshing volumes: follow so many strokes with a tolerance\n"
       "  --volume N    this one alone: what a failure's reproducer says\n"
       "  --save FILE   with --volume: write it as .rvol; if it fails, the least of it that does, for "
@@ -40,6 +41,10 @@ void usage() {
 Arguments parse(int argc, char** argv) {
   Arguments out;
   each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--tolerant") {
+      out.options.tolerant = true;
+      return Takes::Flag;
+    }
     if (option == "--volumes")
       out.volumes = whole_number(option, value);
     else if (option == "--seconds")
@@ -68,9 +73,9 @@ void print(const MeshFailure& f) {
 
 int run_one(const Arguments& arguments) {
   riffler::Volume volume = mesh_volume(arguments.options.seed, *arguments.volume);
-  const auto problem_of = [](const riffler::Volume& v) -> Problem {
+  const auto problem_of = [&](const riffler::Volume& v) -> Problem {
     try {
-      return check_mesh(v, true);
+      return check_volume_number(arguments.options, *arguments.volume, v, true);
     } catch (const std::exception& e) {
       return std::string("an exception: ") + e.what();
     }

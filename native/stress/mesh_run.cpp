@@ -29,6 +29,19 @@ Volume mesh_volume(std::uint64_t seed, std::uint64_t number) {
   return draw_volume(random, mesh_scene(number));
 }
 
+double mesh_tolerance(const Volume& volume, std::uint64_t number) {
+  constexpr std::array kPitches{0.02, 0.1, 0.5, 3.0, 1000.0};
+  // Each scene meets each tolerance.
+  const std::uint64_t round = number / static_cast<std::uint64_t>(MeshScene::kCount);
+  return kPitches[static_cast<std::size_t>(round % kPitches.size())] * volume.frame().pitch;
+}
+
+Problem check_volume_number(const MeshOptions& options, std::uint64_t number, const Volume& volume, bool threads,
+                            std::size_t* triangles) {
+  return options.tolerant ? check_tolerance(volume, mesh_tolerance(volume, number), threads, triangles)
+                          : check_mesh(volume, threads, triangles);
+}
+
 void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& out) {
   const MeshScene scene = mesh_scene(number);
   MeshTally& tally = out.scenes[static_cast<std::size_t>(scene)];
@@ -38,14 +51,15 @@ void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& o
   Problem problem;
   try {
     std::size_t triangles = 0;
-    problem = check_mesh(mesh_volume(options.seed, number), threads, &triangles);
+    problem = check_volume_number(options, number, mesh_volume(options.seed, number), threads, &triangles);
     tally.empty += triangles == 0, tally.triangles += static_cast<long>(triangles);
   } catch (const std::exception& e) {
     problem = std::string("an exception: ") + e.what();
   }
   if (problem.empty()) return;
   ++tally.failures;
-  if (out.failures.size() < kVolumesKept) out.failures.push_back({options.seed, number, scene, problem});
+  if (out.failures.size() < kVolumesKept)
+    out.failures.push_back({options.seed, number, scene, problem, options.tolerant});
 }
 
 MeshResults run_meshes(const MeshOptions& options, std::uint64_t volumes,
@@ -60,7 +74,7 @@ MeshResults run_meshes(const MeshOptions& options, std::uint64_t volumes,
 
 std::string reproducer(const MeshFailure& failure) {
   return "riffler_mesh_stress --seed " + std::to_string(failure.seed) + " --volume " + std::to_string(failure.number) +
-         " --save failure.rvol";
+         (failure.tolerant ? " --tolerant" : "") + " --save failure.rvol";
 }
 
 }  // namespace riffler::stress

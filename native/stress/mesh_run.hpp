@@ -14,6 +14,8 @@ namespace riffler::stress {
 
 struct MeshOptions {
   std::uint64_t seed = 1;
+  /// Mesh with tolerances from a fiftieth of the pitch to a thousand pitches, instead of without.
+  bool tolerant = false;
   int threads_every = 16;  ///< volumes between two that are meshed with 1 and with 4 threads
 };
 
@@ -22,6 +24,7 @@ struct MeshFailure {
   std::uint64_t seed, number;
   MeshScene scene;
   Problem problem;
+  bool tolerant = false;
 };
 
 struct MeshTally {
@@ -38,6 +41,12 @@ struct MeshResults {
 /// Scene of volume number `number`, which depends only on the seed and the number.
 MeshScene mesh_scene(std::uint64_t number);
 Volume mesh_volume(std::uint64_t seed, std::uint64_t number);
+
+/// Tolerance for volume number `number` with options.tolerant, mm.
+double mesh_tolerance(const Volume& volume, std::uint64_t number);
+/// The check that these options ask for.
+Problem check_volume_number(const MeshOptions& options, std::uint64_t number, const Volume& volume, bool threads,
+                            std::size_t* triangles = nullptr);
 
 /// Adds volume `number` to the results.
 void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& out);

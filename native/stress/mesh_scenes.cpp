@@ -37,6 +37,8 @@ Place draw_place(Random& random, int most = 11) {
     if (where == 3) lower[k] = out.h * random.sign() * kFar * (random.one_in(2) ? 1.0 : random.uniform());
     if (where == 4) lower[k] = out.h * (random.below(41) - 20) / 2;
   }
+  // No side of the box as long as the pitch would be refused; rounding may have made one shorter.
+  if (std::max({size.x, size.y, size.z}) < 1.001 * out.h) size.x = 1.4 * out.h;
   const char* directions = random.one_of({"xyz", "xyz", "xyz", "xyz", "z", "z", "x", "y"});
   out.frame = {{lower, lower + size}, out.h, directions};
   for (int k = 0; k < 3; ++k) out.cells[k] = dexel::ray_count(size[k], out.h);

@@ -124,6 +124,19 @@ def test_parts_become_volumes_and_fewer_triangles(quick):
     assert sum("left out" in row["engine"] for row in table) == 6
 
 
+def test_meshes_with_a_tolerance_keep_it_and_need_few_triangles(quick):
+    table = rows(quick, "detail", "tolerances")
+    mine = [row for row in table if "there_mm" in row]
+    assert {row["directions"] for row in mine} == {"xyz", "z"} and len(mine) == 6
+    for row in mine:
+        assert max(row["there_mm"], row["back_mm"]) <= row["tolerance"] * (1 + 1e-9)
+        assert row["bad"] == row["others"] == 0 and row["fewer"] > 5
+    fine = rows(quick, "detail", "growth")[1]
+    assert fine["full_order"] > 1.9 > fine["order"]
+    assert sum("left out" in row["engine"] for row in rows(quick, "detail", "rivals")) == 4
+    assert [row["part"] for row in rows(quick, "detail", "parts")] == ["S500k, first 20 000 moves"]
+
+
 def test_pencil_curves_are_found_where_they_are_known_and_nowhere_else(quick):
     table = rows(quick, "pencil", "valleys")
     mine = {row["part"]: row for row in table if row["engine"] == "Riffler"}

@@ -28,6 +28,16 @@ TEST(MeshStress, HoldsForVolumesFromTheDegenerateLimits) {
   }
 }
 
+TEST(MeshStress, HoldsWithTolerancesOfAllSizes) {
+  MeshOptions options;
+  options.tolerant = true;
+  const MeshResults results = run_meshes(options, test::cases(150));
+  for (const MeshFailure& f : results.failures)
+    ADD_FAILURE() << "volume " << f.number << " (" << name(f.scene) << "): " << f.problem
+                  << "\nagain: " << reproducer(f);
+  EXPECT_GT(results.total().triangles, test::cases(25000));
+}
+
 /// Volumes that a mesher once failed for: the least of each, as riffler_mesh_stress writes them.
 TEST(MeshStress, HoldsForVolumesThatOnceFailed) {
   for (const auto& entry : std::filesystem::directory_iterator(test::checkout() / "native/tests/marching/volumes"))
@@ -57,6 +67,20 @@ TEST(MeshStress, FindsTheSmallestFailingVolume) {
 }
 
 // The judge: each defect is seen.
+
+TEST(MeshStress, FindsAMeshThatIsFartherThanTheTolerance) {
+  const Volume volume = Volume::block({{{0, 0, 0}, {6, 5, 4}}, 0.5, "xyz"});
+  const Mesh full = marching::to_mesh(volume), mesh = marching::to_mesh(volume, 0.01);
+  EXPECT_EQ(check_within(mesh, full, 0.01), "");
+  Mesh shifted = mesh;
+  for (Vec3& v : shifted.vertices) v.x += 1.0 / 64;
+  EXPECT_NE(check_within(shifted, full, 0.01), "");
+  EXPECT_EQ(check_within(shifted, full, 0.016), "");
+  Mesh open = mesh;
+  open.triangles.pop_back();
+  EXPECT_NE(check_within(open, full, 0.01), "");
+  EXPECT_NE(check_within({}, full, 0.01), "");
+}
 
 /// To multiples of 2⁻²⁰, which float32 holds.
 Vec3 on_floats(const Vec3& v) {
