@@ -48,7 +48,10 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
             "LIBGL_ALWAYS_SOFTWARE": "1",
         }
         screen = ["xvfb-run", "-a", "-n", str(display), "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
-        real = "\nREAL_EVENTS = True\n" in script.read_text()
+        text = script.read_text()
+        if "\nPIXELS = False\n" in text and not bench.measure:
+            variables["LP_NO_RAST"] = "1"  # windowed/pixels.py
+        real = "\nREAL_EVENTS = True\n" in text
         # A script that cannot be loaded ends Blender, which otherwise waits for the time limit.
         blender = [application.command[0], "--factory-startup", "--python-exit-code", "1"]
         blender += [] if real else ["--enable-event-simulate"]

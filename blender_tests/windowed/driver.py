@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
 import pictures
+import pixels
 
 from support import common, conditions, harness, report
 
@@ -31,6 +32,7 @@ class Screen:
     def __init__(self, out, script):
         self.out, self.script = Path(out), script
         self.at = (0, 0)  # the mouse's last target
+        self.pixels = pixels.Pixels()
         self.unlike = []  # differences of pictures; the steps continue, so that all pictures are taken
 
     @property
@@ -70,12 +72,15 @@ class Screen:
         """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels
         that are still moving, and a renderer on a busy computer, get time to match it. vary: kinds of areas, and boxes,
         that may differ each time."""
+        yield from self.pixels.fill(self.window)
         for pause in (0.5, 1.0, 2.0, 4.0, 0):
             complaint = self._shoot(name, vary)
             if not complaint:
                 break
-            self.area.tag_redraw()  # panels move on with each drawing
+            for area in self.window.screen.areas:
+                area.tag_redraw()  # panels move on with each drawing
             yield pause
+        self.pixels.kept = False
         if complaint is None:
             report.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
         elif complaint:
@@ -85,8 +90,16 @@ class Screen:
             )
 
     def shot(self, name):
-        """A picture of the whole display for inspection, without comparison. From outside: Blender's own operator gives
-        a black one from 4.3 on."""
+        """A picture of the whole display for inspection, without comparison, if there are pixels: steps to `yield
+        from`."""
+        if pixels.NONE:
+            return
+        yield from self.pixels.fill(self.window)
+        self.take(name)
+        self.pixels.kept = False
+
+    def take(self, name):
+        """Writes what the display shows. From outside: Blender's own operator gives a black one from 4.3 on."""
         path = self.out / self.script / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
         subprocess.run(["import", "-window", "root", str(path)], check=True)
@@ -94,7 +107,7 @@ class Screen:
 
     def _shoot(self, name, vary):
         """Returns the result of pictures.check."""
-        self.shot(name)
+        self.take(name)
         return pictures.check(self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
 
     # A Blender that takes simulated events takes no others: a script sets REAL_EVENTS = True to avoid them, and all
@@ -171,11 +184,12 @@ class Play:
 
     def __call__(self):
         try:
+            self.screen.pixels.tick()
             if self.condition is not None:
                 if self.condition():
                     self.condition = None
                 elif time.perf_counter() - self.since > PATIENCE:
-                    self.screen.shot("in-vain")
+                    self.screen.take("in-vain")
                     why = conditions.explain(self.condition)
                     raise AssertionError(f"waited {PATIENCE} s in vain at {where(self.generator)} for\n{why}")
                 else:

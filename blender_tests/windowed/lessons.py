@@ -163,7 +163,7 @@ def found(screen, region, words, share):
                     screen.move(x, fitting[0])
                     yield 0.1
                     return
-    screen.shot("no-button")
+    yield from screen.shot("no-button")
     raise AssertionError(f"no button has {words}; there are {sorted(seen)}")
 
 

@@ -7,6 +7,7 @@ import bpy
 
 from support import harness
 
+PIXELS = False
 stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
 
 
@@ -31,13 +32,13 @@ def steps(screen):
     assert dug < full - 100
     screen.move(*stroke.pixel(screen, (30, 40, 20)))
     yield 1.0
-    screen.shot("brushes-1-dug")
+    yield from screen.shot("brushes-1-dug")
     yield from stroke.drag(screen, [(20, 20, 17), (40, 20, 17)])
     assert dug < stroke.volume().volume < full
     stroke.tool(screen, "riffler.grab")
     yield from stroke.drag(screen, [(30, 0.5, 20), (30, 10, 24)])
     yield 0.5
-    screen.shot("brushes-2-grabbed")
+    yield from screen.shot("brushes-2-grabbed")
     grabbed = stroke.volume().to_bytes()
     screen.key("Z", ctrl=True)
     yield lambda: stroke.volume().to_bytes() != grabbed

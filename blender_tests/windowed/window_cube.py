@@ -112,7 +112,7 @@ def from_the_menu(screen):
     yield 0.5
     for key in MENU:
         yield from answered(screen, key)
-    screen.shot("menu")
+    yield from screen.shot("menu")
     yield from answered(screen)
     yield lambda: "Sphere" in bpy.data.objects
     ball = bpy.context.object

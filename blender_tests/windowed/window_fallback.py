@@ -56,4 +56,4 @@ def without_numpy(screen, core):
     words = ["Blender from blender.org"] if own else ["sudo apt install python3-numpy\n", "restart Blender"]
     assert all(word in remedy for word in words), remedy
     assert own or ("blender.org" not in remedy and "zip" not in remedy), remedy
-    screen.shot("08-without-numpy")
+    yield from screen.shot("08-without-numpy")

@@ -35,7 +35,7 @@ def choose(screen, operator, path, name=None, shot="", **more):
     params.directory, params.filename = str(path.parent).encode(), path.name if name is None else name
     yield 0.5
     if shot:
-        screen.shot(shot)
+        yield from screen.shot(shot)
     region = next(r for r in area.regions if r.type == "WINDOW")
     with bpy.context.temp_override(window=window, area=area, region=region):
         bpy.ops.file.execute("INVOKE_DEFAULT")
@@ -84,7 +84,7 @@ def of_few_rays(screen):
     yield lambda: "Suzanne Stock" not in bpy.data.objects
     yield from lessons.press(screen, "riffler.make_sculpt")
     yield 0.3
-    screen.shot("few-rays")
+    yield from screen.shot("few-rays")
     for value in ("PRESS", "RELEASE"):
         lessons.event(screen, "RET", value, screen.at)
     yield lambda: "Suzanne Stock" in bpy.data.objects
@@ -112,7 +112,7 @@ def of_facets(screen):
     yield lambda: "Sphere Stock" in bpy.data.objects and not running()
     off = np.linalg.norm(common.coordinates(bpy.data.objects["Sphere Stock"].data), axis=1) - 20
     assert np.abs(off).max() < 0.02, np.abs(off).max()
-    screen.shot("facets")
+    yield from screen.shot("facets")
     bpy.data.objects.remove(bpy.data.objects["Sphere Stock"])
     bpy.data.objects.remove(bpy.data.objects["Sphere"])
     stock.rounded = False
@@ -142,7 +142,7 @@ def of_odd_sizes(screen):
         assert len(bpy.data.objects) == there
         screen.key("ESC")  # closes the message, which covers the sidebar in Blender 5
         yield 0.3
-    screen.shot("sizes")
+    yield from screen.shot("sizes")
     screen.to_view()
     yield 0.5
 

@@ -12,6 +12,7 @@ from support import common, harness
 from support.sculpting import matches_its_volume, nothing_is_left
 
 REAL_EVENTS = True
+PIXELS = False
 NAME = "Stock"
 
 strokes = harness.load(Path(__file__).with_name("window_stroke.py"))

@@ -16,6 +16,7 @@ stroke = harness.load(HERE / "window_stroke.py")
 lessons = harness.load(HERE / "lessons.py")
 live_tests = harness.load(HERE.parent / "headless" / "sculpt" / "test_live_sculpt.py")
 refusals = harness.load(HERE.parent / "headless" / "blender" / "test_refusals.py")
+PIXELS = False
 LOWEST = 18.5  # mm: the bottom of a groove of 1.5 mm in the top at 20
 
 
@@ -238,7 +239,7 @@ def at_the_box(screen):
     assert told(screen, before) == ""
     stroke.module("sculpt.live_registry").end_all()
     yield 0.5
-    screen.shot("bead")
+    yield from screen.shot("bead")
     sharp = seam(sculpt().data, mm)
     assert len(sharp) > 60 and sharp.mean() > 0.98, (len(sharp), sharp.mean())
 
@@ -285,7 +286,7 @@ def in_odd_states(screen):
     yield 0.3
     assert refusals.UNFIT[refusals.flat].replace("Sculpt", "Stock") in told(screen, before), told(screen, before)
     assert stroke.volume().to_bytes() == whole and stroke.run() is None
-    screen.shot("flat")
+    yield from screen.shot("flat")
     screen.key("ESC")  # closes the message, which would take the next key in Blender 5
     yield 0.3
     lessons.activate(sculpt())
@@ -347,4 +348,4 @@ def of_odd_sizes(screen):
         screen.key("ESC")  # closes the message
         yield 0.3
         assert stroke.volume().to_bytes() == whole and len(sculpt().data.polygons) == faces
-    screen.shot("sizes")
+    yield from screen.shot("sizes")

@@ -4,6 +4,7 @@ import bpy
 
 INSTALL = False
 REAL_EVENTS = True
+PIXELS = False
 seen = []
 
 

@@ -8,6 +8,7 @@
 #include "collide/tools.hpp"
 #include "nurbs/quadrics.hpp"
 #include "riffler/collide/collider.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::collide::exact_collider_test {
 namespace {
@@ -43,7 +44,7 @@ TEST(ExactCollider, HasTheClearanceOfABallFromATorusInClosedForm) {
   const Assembly assembly(ball);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(-0.5, 2);
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < test::cases(60); ++k) {
     // The ball's centre on the outward normal of the torus, the axis away from it: nothing but the ball is near.
     const double a = 6.3 * share(random), b = 6.3 * share(random), depth = share(random);
     const Vec3 ring(std::cos(a), std::sin(a), 0), normal = std::cos(b) * ring + Vec3(0, 0, std::sin(b));
@@ -66,7 +67,7 @@ TEST(ExactCollider, FeelsNoFacetsAlongATorus) {
   const Assembly assembly(cutters::ball(6, 30));
   const auto ripple = [&](const Collider& collider) {
     double least = 1e9, most = 0;
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < 200; k += 200 / test::cases(200)) {
       const double a = 0.8 + 1e-3 * k, b = 0.3;
       const Vec3 ring(std::cos(a), std::sin(a), 0), normal = std::cos(b) * ring + Vec3(0, 0, std::sin(b));
       const double force = glm::length(collider.query(assembly, {20.0 * ring + (5 - 0.1) * normal, normal}).force);

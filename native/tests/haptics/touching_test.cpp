@@ -9,6 +9,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::haptics::touching_test {
 namespace {
@@ -169,7 +170,7 @@ TEST(Touching, GivesNoEnergyToAnyHandWithThePassivityController) {
     Wrench held;
     double stiffest = 0;
     int touched = 0;
-    for (int k = 0; k < 60'000; ++k) {
+    for (int k = 0; k < test::cases(60'000); ++k) {
       if (k % 64 == 0) hand = random.uniform(0, 1.5) * random.direction();
       const Vec3 push = hand - 1e-3 * v - 0.05 * (x - Vec3(39, 15, -1));
       const Vec3 a = (held.force + push) / 1.5e-4, way = kTick * v + 0.5 * kTick * kTick * a;
@@ -184,7 +185,7 @@ TEST(Touching, GivesNoEnergyToAnyHandWithThePassivityController) {
       ASSERT_LE(delivered, PassivitySettings{}.reserve + 1e-9L) << directions << ", " << k;
     }
     EXPECT_GT(stiffest, 0.5);
-    EXPECT_GT(touched, 2000);
+    EXPECT_GT(touched, test::cases(2000));
   }
 }
 

@@ -328,7 +328,7 @@ TEST(SculptLoop, MissedStepsHoldTheForceWithoutAJump) {
   });
   double last = 0, jump = 0;
   int missed = 0;
-  for (int k = 0; k < 20'000; ++k) {
+  for (int k = 0; k < test::cases(20'000); ++k) {
     const double t = 1e-3 * k;
     pen::PenSample sample;
     sample.pose = {{4 * std::sin(9 * t), 0, -2 * std::min(1.0, t)}, {0, 0, 1}};

@@ -67,7 +67,7 @@ TEST(Decimate, StaysWithinTheToleranceInBothDirections) {
     const bool closed = audit(c.mesh).watertight() && audit(c.mesh).open_edges == 0;
     std::size_t before = c.mesh.triangles.size();
     for (const double tolerance : {0.002, 0.05, 0.5}) {
-      if (test::kSanitized && tolerance < 0.05) continue;
+      if (test::kSanitized && tolerance != 0.05) continue;
       const Mesh result = decimate(c.mesh, {{}, tolerance});
       EXPECT_LE(one_way(c.mesh, result), tolerance);
       EXPECT_LE(one_way(result, c.mesh), tolerance);
@@ -122,6 +122,7 @@ TEST(Decimate, RandomBumpsStayWithinTheTolerance) {
   // What the checks of the single collapses let pass by themselves: 1.06 times the tolerance from old to new for the
   // first, 1.02 times from new to old for the second.
   for (const Case& c : {Case{6, 0.1}, Case{66, 0.3}, Case{1, 0.05}, Case{2, 0.3}}) {
+    if (test::kSanitized && c.seed < 6) continue;
     const Mesh mesh = bumpy(c.seed), result = decimate(mesh, {{}, c.tolerance});
     EXPECT_LT(result.triangles.size(), mesh.triangles.size()) << "seed " << c.seed;
     EXPECT_LE(one_way(mesh, result), c.tolerance) << "seed " << c.seed;
@@ -210,7 +211,9 @@ TEST(Decimate, IsTheSameForAnyNumberOfThreads) {
   const Mesh mesh = rough(torus_mesh(10, 4, 260, 130), 0.01);  // several patches, several partitions
   const auto run = [&](const char* threads) {
     setenv("RIFFLER_THREADS", threads, 1);
-    std::vector<Mesh> results{decimate(mesh, {6000, {}}), decimate(mesh, {6000, 0.05}), decimate(mesh, {{}, 0.05})};
+    std::vector<Mesh> results{decimate(mesh, {6000, {}})};
+    if (!test::kSanitized)
+      results.push_back(decimate(mesh, {6000, 0.05})), results.push_back(decimate(mesh, {{}, 0.05}));
     unsetenv("RIFFLER_THREADS");
     return results;
   };
@@ -335,7 +338,7 @@ TEST(Decimate, AToleranceNearZeroEndsSoon) {
 /// All triangles round one vertex, below a disk's edge or above and below it: what a collapse looks at grew with all of
 /// them.
 TEST(Decimate, FansOfManyTrianglesTakeTimeByTheTriangle) {
-  constexpr int kMany = 50'000;
+  constexpr int kMany = test::cases(50'000);
   for (const bool open : {false, true}) {
     Mesh fan;
     fan.vertices = {{0, 0, 30}, {0, 0, -30}};
