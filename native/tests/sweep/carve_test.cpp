@@ -352,6 +352,30 @@ TEST(Carve, KeepsItsAccuracyFarFromTheOrigin) {
     }
 }
 
+/// The flat end of a tool that moves along itself: its rim, where a ray may enter, sweeps the same plane.
+TEST(Carve, NormalsOfAFlatEndPointIntoTheToolOnLevelMoves) {
+  const dexel::Frame frame{{{3.9488098799917686, 2.7637360331994647, 2.2442817433757969},
+                            {13.563640305515396, 8.1720781475565047, 12.159575619697037}},
+                           0.30046345079761333,
+                           "xyz"};
+  Volume volume = Volume::block(frame);
+  const double z = 8.3871605292757323;
+  carve(volume, cutters::flat(3.0050820543096584, 0.15025410271548292),
+        std::vector<Pose>{{{13.832509517550406, 3.9998577522044707, z}, {0, 0, 1}},
+                          {{11.395255473252305, 5.3230355714018209, z}, {0, 0, 1}}});
+  int ends = 0;
+  for (const dexel::Grid& grid : volume.grids())
+    for (int i = 0; i < grid.nu(); ++i)
+      for (int j = 0; j < grid.nv(); ++j)
+        for (const dexel::SpanNormals& n : grid.ray_normals(i, j)) {
+          const int along = static_cast<int>(grid.axis());
+          EXPECT_LE(n.near.unpack()[along], 1e-4);
+          EXPECT_GE(n.far.unpack()[along], -1e-4);
+          ++ends;
+        }
+  EXPECT_GT(ends, 1000);
+}
+
 TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
