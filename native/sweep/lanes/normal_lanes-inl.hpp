@@ -105,7 +105,9 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   if (none(hn::Not(ends_there))) return n;
   // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
   // sides. On a smooth side, t is nearly right; remove what remains of n · v.
-  const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, hn::Add(rho, abs(z)))));
+  // t is a multiple of 2⁻³⁰, so on a long move a point on an edge is a little off both sides.
+  const V size = hn::Add(hn::Add(rho, abs(z)), hn::Mul(set(2), speed));
+  const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, size)));
   const V3 second = in_space(at.second);
   // One of the sides may slide along itself, as the flat end of a tool on a level move does.
   const M edge = both(close, hn::Lt(hn::Mul(slide, dot(second, velocity)), hn::Mul(rounding, square)));

@@ -376,6 +376,28 @@ TEST(Carve, NormalsOfAFlatEndPointIntoTheToolOnLevelMoves) {
   EXPECT_GT(ends, 1000);
 }
 
+/// Times are stored in units of 2⁻³⁰, so on a long move an end at the rim is a little off both of its sides.
+TEST(Carve, NormalsAtARimAreThoseOfTheSweptVolumeOnLongMoves) {
+  Volume volume = Volume::block({{{0, 0, 0}, {27, 27, 32}}, 1, "xyz"});
+  const Tool tool = cutters::taper(0.75, 0.42084511404081137, 6, 74.729512242486905, true);
+  const Vec3 axis{0.10327472178603501, -0.70585172104732052, -0.70079075317426431}, way{6.4, 0, 0};
+  const Pose from{{12.733683212308428, 13.7454958547758, -0.12149844987067659}, axis};
+  const Pose to{from.tip + way, axis};
+  carve(volume, tool, std::vector<Pose>{from, to});
+  const dexel::Grid& grid = volume.grids()[2];
+  const Vec3 normal = grid.ray_normals(16, 13)[0].near.unpack();
+  const reference::SweptDistance swept(tool.profile(), Motion(from, to));
+  const double step = 1e-3;
+  const Vec3 p = Vec3(grid.u(16), grid.v(13), grid.ray(16, 13)[0].near) - 3 * step * normal;
+  Vec3 gradient;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 aside(0);
+    aside[k] = step;
+    gradient[k] = (swept(p + aside) - swept(p - aside)) / (2 * step);
+  }
+  EXPECT_LT(glm::length(gradient + normal), 1e-4);
+}
+
 TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
