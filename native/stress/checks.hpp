@@ -34,8 +34,10 @@ Allowed allowed_error(const Stage& stage, const Move& move);
 
 /// Comparison of the ends that a move made with the reference.
 struct Comparison {
-  long ends = 0, points = 0;
-  double worst = 0;  ///< of error / allowed error, over all ends
+  long ends = 0, points = 0, normals = 0;
+  long off_normals = 0;                 ///< after straight moves, where the surface is smooth, by more than 1e-4 rad
+  double worst = 0;                     ///< of error / allowed error, over all ends
+  double worst_normal = 0, turned = 0;  ///< rad: largest error of a normal after a straight and a turning move
   Problem problem;
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "reference/swept_distance.hpp"
@@ -9,6 +10,7 @@ namespace riffler::stress {
 
 namespace {
 
+constexpr double kNormal = 1e-4;               // rad, allowed error of a stored normal after a straight move
 constexpr double kGrazing = 2.23606797749979;  // √5: where the distance along the ray is more than this times that
                                                // in space, an end is measured in space
 
@@ -53,21 +55,26 @@ std::vector<RayName> choose_rays(Random& random, const Volume& before, const Vol
 class RayComparison {
  public:
   RayComparison(const reference::SweptDistance& swept, const Allowed& allowed, const dexel::Grid& before,
-                const dexel::Grid& after, const RayName& ray, Comparison& out)
+                const dexel::Grid& after, const RayName& ray, double radius, Comparison& out)
       : swept_(swept),
         allowed_(allowed.error),
         along_rays_(allowed.along_rays),
         grid_(after),
         before_(before.ray(ray.i, ray.j)),
         after_(after.ray(ray.i, ray.j)),
+        normals_(after.ray_normals(ray.i, ray.j)),
+        turns_(allowed.along_rays),
+        radius_(radius),
         ray_(ray),
         out_(out) {}
 
   void run(Random& random) {
-    for (const dexel::Span& s : after_)
+    for (std::size_t k = 0; k < after_.size(); ++k)
       for (const bool near : {true, false}) {
-        const double end = near ? s.near : s.far;
-        if (!is_end(before_, end)) compare_end(end, near);
+        const double end = near ? after_[k].near : after_[k].far;
+        if (is_end(before_, end)) continue;
+        compare_end(end, near);
+        if (!normals_.empty()) compare_normal(end, (near ? normals_[k].near : normals_[k].far).unpack());
       }
     for (const double s : places(random)) compare_point(s);
   }
@@ -105,6 +112,42 @@ class RayComparison {
     if (error > allowed_) fail(off < 0 ? "too little cut, the end" : "cut too deep, the end", end, error);
   }
 
+  /// The error of a normal, or none where the surface is not smooth or another part of it is near. A point of the
+  /// material at a small distance from the end, against the normal, has the end as the nearest point of the swept
+  /// surface, so the distance grows against the normal there. Differences of two sizes agree where it is smooth.
+  std::optional<double> normal_error(double end, const Vec3& normal, double step) const {
+    const Vec3 p = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), end}) - 3 * step * normal;
+    const Vec3 a = gradient(p, step), b = gradient(p, step / 2);
+    if (std::abs(glm::length(a) - 1) > 1e-5 || glm::length(a - b) > 2e-5) return {};
+    return glm::length(glm::normalize(b) + normal);
+  }
+
+  void compare_normal(double end, const Vec3& normal) {
+    std::optional<double> error;
+    for (const double size : {1e-3, 1e-4, 1e-5}) {  // a crease is not near at every size
+      const double step = std::max(size * radius_, turns_ ? allowed_ : 0);
+      if (step < 100 * allowed_ && !turns_ && error) break;  // rounding
+      error = normal_error(end, normal, step);
+      if (!error || *error <= kNormal || turns_) break;
+    }
+    if (!error) return;
+    ++out_.normals;
+    double& worst = turns_ ? out_.turned : out_.worst_normal;
+    worst = std::max(worst, *error);
+    out_.off_normals += !turns_ && *error > kNormal;
+  }
+
+  Vec3 gradient(const Vec3& p, double step) const {
+    Vec3 g;
+    for (int k = 0; k < 3; ++k) {
+      Vec3 way(0);
+      way[k] = step;
+      const auto at = [&](const Vec3& q) { return swept_.bracket(q, 1e-7 * step).upper; };
+      g[k] = (at(p + way) - at(p - way)) / (2 * step);
+    }
+    return g;
+  }
+
   /// Distance along the ray from an end, which is `off` mm outside the swept volume, to the surface: into the material
   /// if too little was cut, else away from it. If the ray grazes, the distance in space.
   double along(double end, bool near, double off) const {
@@ -140,6 +183,9 @@ class RayComparison {
   bool along_rays_;
   const dexel::Grid& grid_;
   std::span<const dexel::Span> before_, after_;
+  std::span<const dexel::SpanNormals> normals_;
+  bool turns_;
+  double radius_;
   RayName ray_;
   Comparison& out_;
 };
@@ -152,7 +198,9 @@ Comparison compare_with_reference(Random& random, const Stage& stage, const Move
   const reference::SweptDistance swept(stage.tool.profile(), Motion(move.from, move.to));
   const Allowed allowed = allowed_error(stage, move);
   for (const RayName& ray : choose_rays(random, before, after, rays))
-    RayComparison(swept, allowed, before.grids()[ray.grid], after.grids()[ray.grid], ray, out).run(random);
+    RayComparison(swept, allowed, before.grids()[ray.grid], after.grids()[ray.grid], ray,
+                  stage.tool.profile().max_radius(), out)
+        .run(random);
   return out;
 }
 

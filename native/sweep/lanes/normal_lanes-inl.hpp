@@ -105,8 +105,12 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   if (none(hn::Not(ends_there))) return n;
   // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
   // sides. On a smooth side, t is nearly right; remove what remains of n · v.
-  const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, hn::Add(rho, abs(z)))));
-  const M edge = both(close, hn::Lt(hn::Mul(slide, dot(in_space(at.second), velocity)), zero()));
+  // t is a multiple of 2⁻³⁰, so on a long move a point on an edge is a little off both sides.
+  const V size = hn::Add(hn::Add(rho, abs(z)), hn::Mul(set(2), speed));
+  const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, size)));
+  const V3 second = in_space(at.second);
+  // One of the sides may slide along itself, as the flat end of a tool on a level move does.
+  const M edge = both(close, hn::Lt(hn::Mul(slide, dot(second, velocity)), hn::Mul(rounding, square)));
   const M smooth = without(hn::Le(abs(slide), hn::Mul(set(0.15), speed)), edge);
   const V3 level = unit(less(n, hn::Div(slide, pick(still, set(1), square)), velocity));
   const V3 around{hn::Sub(hn::Mul(axis.y, aside.z), hn::Mul(axis.z, aside.y)),
@@ -117,7 +121,9 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
                  hn::Sub(hn::Mul(around.x, velocity.y), hn::Mul(around.y, velocity.x))};
   const V length = sqrt(dot(swept, swept));
   const M firm = hn::Gt(length, hn::Mul(hn::Mul(rounding, speed), rho));
-  const V sign = with_sign(set(1), dot(swept, aside));
+  // The normal is between those of the two sides, and may be perpendicular to the radial direction.
+  const V3 between{hn::Add(n.x, second.x), hn::Add(n.y, second.y), hn::Add(n.z, second.z)};
+  const V sign = with_sign(set(1), dot(swept, choose(close, between, aside)));
   const V3 turned = choose(firm, scaled(swept, hn::Div(sign, pick(firm, length, set(1)))), n);
   return choose(ends_there, n, choose(smooth, level, turned));
 }

@@ -52,6 +52,8 @@ class PackedRays {
   /// Hull of the material at the window's heights.
   V low(int k) const { return hn::LoadU(kD, fields_[2] + k); }
   V high(int k) const { return hn::LoadU(kD, fields_[3] + k); }
+  /// The gap between the two spans of a ray; in rays with one or more than two, near > far.
+  RayIntervals gap(int k) const { return {hn::LoadU(kD, fields_[5] + k), hn::LoadU(kD, fields_[6] + k)}; }
   /// Indices in the tile.
   V place(int k) const { return hn::LoadU(kD, fields_[4] + k); }
   void store(int k, int result, V value) { hn::StoreU(value, kD, fields_[result] + k); }
@@ -73,7 +75,7 @@ class PackedRays {
   }
 
  private:
-  static constexpr int kFields = 5;
+  static constexpr int kFields = 7;
   /// A group's first ray, and which of its rays are here.
   struct Found {
     std::uint16_t ray;
@@ -99,6 +101,9 @@ class PackedRays {
         };
         hn::StoreU(set(w.u[a]), kD, fields_[0] + count);
         put(1, g.v), put(2, max(g.low, low)), put(3, min(g.high, high)), put(4, hn::Add(set(g.ray), index));
+        // Which gap of more spans the planes have depends on earlier cuts; no cut may depend on that.
+        const M two = from_bits(g.two & ~g.many);
+        put(5, pick(two, g.first_far, set(kInfinity))), put(6, pick(two, g.last_near, set(-kInfinity)));
         count += std::popcount(active);
       }
     count_ = count, groups_ = groups;

@@ -29,8 +29,9 @@ using namespace base::HWY_NAMESPACE;
 struct Ray {
   V place;  // index in the tile
   V u, v;
-  V low, high;  // its material, heights from the body's origin
-  V direction;  // of time: 1, or −1 if traversed from the end
+  V low, high;       // its material, heights from the body's origin
+  RayIntervals gap;  // in the material; near > far if there is none
+  V direction;       // of time: 1, or −1 if traversed from the end
 };
 
 /// The interval found so far, and the times of its ends.
@@ -60,7 +61,7 @@ HWY_INLINE void each(Sample& s, const F& f) {
 }
 template <class F>
 HWY_INLINE void each(Ray& r, const F& f) {
-  f(r.place), f(r.u), f(r.v), f(r.low), f(r.high), f(r.direction);
+  f(r.place), f(r.u), f(r.v), f(r.low), f(r.high), each(r.gap, f), f(r.direction);
 }
 template <class F>
 HWY_INLINE void each(Open& o, const F& f) {
@@ -75,7 +76,14 @@ class TurningLanes {
     const PackedRays rays(w_);
     const V origin = set(b_.origin);
     for (int k = 0; k < rays.count(); k += lanes()) {
-      Ray ray{rays.place(k), rays.u(k), rays.v(k), hn::Sub(rays.low(k), origin), hn::Sub(rays.high(k), origin), set(1)};
+      const RayIntervals gap = rays.gap(k);
+      Ray ray{rays.place(k),
+              rays.u(k),
+              rays.v(k),
+              hn::Sub(rays.low(k), origin),
+              hn::Sub(rays.high(k), origin),
+              {hn::Sub(gap.near, origin), hn::Sub(gap.far, origin)},
+              set(1)};
       look(ray, rays.present(k));
     }
     while (reached_.count() > 0) settle();
@@ -194,14 +202,19 @@ class TurningLanes {
     return without(hit, join);
   }
 
-  /// The material below and above the interval found, minus the tolerance of an end.
+  /// The material below and above the interval found, minus the tolerance of an end. An end in a gap need not be exact:
+  /// only the material beyond the gap is kept. (An end a little outside of the gap would leave a sliver at its border.)
   Kept below(const Open& o) const {
-    const V at = hn::Sub(o.found.at.near, set(b_.along));
-    return {max(min(at, o.ray.high), o.ray.low), o.ray.low, o.ray.direction};
+    const Ray& ray = o.ray;
+    const V end = o.found.at.near, exact = hn::Sub(end, set(b_.along));
+    const V at = pick(hn::Le(end, ray.gap.far), min(exact, ray.gap.near), exact);
+    return {max(min(at, ray.high), ray.low), ray.low, ray.direction};
   }
   Kept above(const Open& o) const {
-    const V at = hn::Add(o.found.at.far, set(b_.along));
-    return {min(max(at, o.ray.low), o.ray.high), o.ray.high, o.ray.direction};
+    const Ray& ray = o.ray;
+    const V end = o.found.at.far, exact = hn::Add(end, set(b_.along));
+    const V at = pick(hn::Ge(end, ray.gap.near), max(exact, ray.gap.far), exact);
+    return {min(max(at, ray.low), ray.high), ray.high, ray.direction};
   }
   static M has_below(const Open& o) { return hn::Gt(o.found.at.near, o.ray.low); }
   static M has_above(const Open& o) {

@@ -352,6 +352,52 @@ TEST(Carve, KeepsItsAccuracyFarFromTheOrigin) {
     }
 }
 
+/// The flat end of a tool that moves along itself: its rim, where a ray may enter, sweeps the same plane.
+TEST(Carve, NormalsOfAFlatEndPointIntoTheToolOnLevelMoves) {
+  const dexel::Frame frame{{{3.9488098799917686, 2.7637360331994647, 2.2442817433757969},
+                            {13.563640305515396, 8.1720781475565047, 12.159575619697037}},
+                           0.30046345079761333,
+                           "xyz"};
+  Volume volume = Volume::block(frame);
+  const double z = 8.3871605292757323;
+  carve(volume, cutters::flat(3.0050820543096584, 0.15025410271548292),
+        std::vector<Pose>{{{13.832509517550406, 3.9998577522044707, z}, {0, 0, 1}},
+                          {{11.395255473252305, 5.3230355714018209, z}, {0, 0, 1}}});
+  int ends = 0;
+  for (const dexel::Grid& grid : volume.grids())
+    for (int i = 0; i < grid.nu(); ++i)
+      for (int j = 0; j < grid.nv(); ++j)
+        for (const dexel::SpanNormals& n : grid.ray_normals(i, j)) {
+          const int along = static_cast<int>(grid.axis());
+          EXPECT_LE(n.near.unpack()[along], 1e-4);
+          EXPECT_GE(n.far.unpack()[along], -1e-4);
+          ++ends;
+        }
+  EXPECT_GT(ends, 1000);
+}
+
+/// Times are stored in units of 2⁻³⁰, so on a long move an end at the rim is a little off both of its sides.
+TEST(Carve, NormalsAtARimAreThoseOfTheSweptVolumeOnLongMoves) {
+  Volume volume = Volume::block({{{0, 0, 0}, {27, 27, 32}}, 1, "xyz"});
+  const Tool tool = cutters::taper(0.75, 0.42084511404081137, 6, 74.729512242486905, true);
+  const Vec3 axis{0.10327472178603501, -0.70585172104732052, -0.70079075317426431}, way{6.4, 0, 0};
+  const Pose from{{12.733683212308428, 13.7454958547758, -0.12149844987067659}, axis};
+  const Pose to{from.tip + way, axis};
+  carve(volume, tool, std::vector<Pose>{from, to});
+  const dexel::Grid& grid = volume.grids()[2];
+  const Vec3 normal = grid.ray_normals(16, 13)[0].near.unpack();
+  const reference::SweptDistance swept(tool.profile(), Motion(from, to));
+  const double step = 1e-3;
+  const Vec3 p = Vec3(grid.u(16), grid.v(13), grid.ray(16, 13)[0].near) - 3 * step * normal;
+  Vec3 gradient;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 aside(0);
+    aside[k] = step;
+    gradient[k] = (swept(p + aside) - swept(p - aside)) / (2 * step);
+  }
+  EXPECT_LT(glm::length(gradient + normal), 1e-4);
+}
+
 TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
