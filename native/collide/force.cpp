@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "collide/force_lanes.hpp"
 #include "riffler/base/block_pool.hpp"
@@ -36,8 +37,7 @@ class ForceSum {
   void run(Deadline& deadline, Counts& counts) {
     contact_.points.reserve(kUsual), contact_.touches.reserve(kUsual);
     if (points_.tree().holds_items(0)) {
-      take(0, 1, found_[0]);
-      add_items({found_.data(), 1}, counts);
+      take(0, 1);
     } else {
       open(0, 1, counts);
     }
@@ -49,6 +49,7 @@ class ForceSum {
       else
         open(points_.tree().first_child(n.parent) + static_cast<std::size_t>(n.child), n.weight, counts);
     }
+    add_items(counts), add_items(counts);
     sums_.add_to(contact_);
   }
 
@@ -57,6 +58,10 @@ class ForceSum {
     std::size_t parent;  // its parent group
     int child;
     double distance, weight;
+  };
+  struct Found {
+    std::array<PointGroup, base::kLanes> groups;
+    std::size_t size = 0;
   };
 
   /// Weight, 0 to 1, of a node as a substitute for its points; in between, both count in part. It depends on the node's
@@ -88,18 +93,30 @@ class ForceSum {
     contact_.points.push_back(point), contact_.touches.push_back(static_cast<Touch>(assembly_.part_at(z)));
   }
 
-  /// All items of the nodes that are left of a group.
-  void add_items(std::span<PointGroup> groups, Counts& counts) {
+  /// Adds the items that were found before, while those found since are fetched from memory.
+  void add_items(Counts& counts) {
+    std::swap(found_, fetched_);
+    const std::span<PointGroup> groups(found_->groups.data(), std::exchange(found_->size, 0));
+    if (groups.empty()) return;
     add_points(assembly_.lane_edges(), frame_, groups, ramp_, sums_);
     counts.points += groups.size() * base::kLanes;
-    for (const PointGroup& g : groups)
-      for (unsigned left = g.inside; left != 0; left &= left - 1) {
-        const int k = std::countr_zero(left);
-        keep(g.points->sphere(k).centre, g.z[k], g.weight);
-      }
+    for (const PointGroup& g : groups) keep(g);
   }
 
-  void take(std::size_t group, double weight, PointGroup& out) const {
+  void keep(const PointGroup& g) {
+    if (g.weight < 0.5) return;
+    std::size_t next = contact_.points.size();
+    contact_.points.resize(next + static_cast<std::size_t>(std::popcount(g.inside)));
+    contact_.touches.resize(contact_.points.size());
+    for (unsigned left = g.inside; left != 0; left &= left - 1, ++next) {
+      const int k = std::countr_zero(left);
+      contact_.points[next] = g.points->sphere(k).centre;
+      contact_.touches[next] = static_cast<Touch>(assembly_.part_at(g.z[k]));
+    }
+  }
+
+  void take(std::size_t group, double weight) {
+    PointGroup& out = found_->groups[found_->size++];
     out.points = &points_.tree().group(group), out.areas = &points_.areas(group), out.weight = weight;
   }
 
@@ -111,7 +128,6 @@ class ForceSum {
     counts.nodes += base::kLanes;
     const std::size_t first = tree.first_child(group);
     const bool above_items = tree.holds_items(first);
-    std::size_t found = 0;
     for (int k = 0; k < base::kLanes; ++k) {
       if (!(distance[k] < spheres.radius[k])) continue;
       const double coarse = weight * share(spheres.sphere(k));
@@ -120,11 +136,11 @@ class ForceSum {
       const std::size_t child = first + static_cast<std::size_t>(k);
       points_.fetch(child);
       if (above_items)
-        take(child, weight - coarse, found_[found++]);
+        take(child, weight - coarse);
       else
         stack_.push_back({group, k, distance[k], weight - coarse});
     }
-    if (found > 0) add_items({found_.data(), found}, counts);
+    if (above_items) add_items(counts);
   }
 
   const Assembly& assembly_;
@@ -135,7 +151,7 @@ class ForceSum {
   ForceSums sums_;
   Contact& contact_;
   base::BlockVector<Node> stack_;
-  std::array<PointGroup, base::kLanes> found_;  // whose points are added together
+  Found one_, other_, *found_ = &one_, *fetched_ = &other_;  // whose points are added together
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "base/fetch.hpp"
 #include "collide/surface.hpp"
+#include "riffler/base/bulk.hpp"
 
 namespace riffler::collide {
 
@@ -47,7 +48,7 @@ class SamplePoints {
 
   double spacing_;
   SphereTree tree_;
-  std::vector<AreaGroup> areas_;
+  base::BulkVector<AreaGroup> areas_;
 };
 
 /// The spacing (mm) that 0 selects; otherwise `spacing`.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/lanes.hpp"
+#include "riffler/base/bulk.hpp"
 #include "riffler/geom/vec.hpp"
 
 namespace riffler::collide {
@@ -74,8 +75,8 @@ class SphereTree {
   void bound(const Items& items);
 
   std::size_t levels_ = 0, first_leaf_ = 0, first_halvings_ = 0;
-  std::size_t widest_ = 0;  // child groups of the first group
-  std::vector<SphereGroup> groups_;
+  std::size_t widest_ = 0;                // child groups of the first group
+  base::BulkVector<SphereGroup> groups_;  // in huge pages: a query jumps in them
   std::vector<std::uint32_t> order_;
 };
 

@@ -75,29 +75,38 @@ Vec3 least_place(const Quadratic& q, const Vec3& middle, const Corners& t) {
 Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, const Corners& t) {
   constexpr int kMost = 40;
   struct End {
-    double share, ahead;  // of g; how much greater f is at the place
+    double share, value, ahead;  // of g; f there; how much greater f is
     Vec3 place;
+
+    double bound() const { return value - share * ahead; }  // the mean's minimum
   };
-  const auto ahead = [&](const Vec3& p) { return f(p - middle) - g(p - middle); };
-  End low{0, 0, least_place(f, middle, t)}, high{1, 0, least_place(g, middle, t)};
-  if ((low.ahead = ahead(low.place)) >= 0) return low.place;
-  if ((high.ahead = ahead(high.place)) <= 0) return high.place;
+  const auto end = [&](double share, const Vec3& place) {
+    const double value = f(place - middle);
+    return End{share, value, value - g(place - middle), place};
+  };
+  End low = end(0, least_place(f, middle, t)), high = end(1, least_place(g, middle, t));
+  if (low.ahead >= 0) return low.place;
+  if (high.ahead <= 0) return high.place;
+  const auto between = [&] { return low.ahead / (low.ahead - high.ahead); };
   double by_low = low.ahead, by_high = high.ahead, before = 1;
   for (int k = 0, side = 0; k < kMost; ++k) {
     const double width = high.share - low.share, part = std::clamp(by_low / (by_low - by_high), 0.01, 0.99);
     const bool slow = k % 2 == 1 && width > 0.5 * before;
     if (k % 2 == 1) before = width;
     const double share = low.share + (slow ? 0.5 : part) * width;
-    const Vec3 place = least_place(mix(f, g, share), middle, t);
-    const double by = ahead(place);
-    if (std::abs(by) <= 1e-13 * std::abs(f(place - middle))) return place;
-    if (by > 0)
-      by_low *= side > 0 ? 0.5 : 1, high = {share, by, place}, by_high = by, side = 1;
+    const End at = end(share, least_place(mix(f, g, share), middle, t));
+    if (std::abs(at.ahead) <= 1e-13 * std::abs(at.value)) return at.place;
+    if (at.ahead > 0)
+      by_low *= side > 0 ? 0.5 : 1, high = at, by_high = at.ahead, side = 1;
     else
-      by_high *= side < 0 ? 0.5 : 1, low = {share, by, place}, by_low = by, side = -1;
+      by_high *= side < 0 ? 0.5 : 1, low = at, by_low = at.ahead, side = -1;
+    // Between the ends' places neither function is greater than this, and no place is below the bound of either end.
+    // Where the functions are not convex a bound may be above: then it proves nothing.
+    const double most = low.value + between() * (high.value - low.value);
+    if (std::abs(most - std::max(low.bound(), high.bound())) <= 1e-16 * std::abs(most)) break;
   }
   // A flat mean has many minima: the one sought lies between those of slightly larger weights of either function.
-  return low.place + low.ahead / (low.ahead - high.ahead) * (high.place - low.place);
+  return low.place + between() * (high.place - low.place);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ from ..rivals import LeftOutError, program
 
 SQUARES = {"quick": (40,), "full": (100, 316)}  # of two triangles, along each side
 TOOLS = ("long", "short")
-BUDGETS = (5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6)  # s
+BUDGETS = (5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3)  # s
 TARGETS = {"mean_us": 80, "p99_us": 350, "clearance_us": 100, "mean_ratio": 0.55, "p99_ratio": 0.35}
 FCL = "FCL OBB, tool mesh"
 CAD_PARTS = ("fandisk", "ktoolcav", "ktoolcor", "spider")  # files that are looked for among the models
