@@ -1,4 +1,4 @@
-"""Leaves out what a software renderer fills between two pictures, since nobody looks at it.
+"""Leaves out what a software renderer would fill between two pictures.
 
 Blender draws as ever, with every call of the add-on and every shader, but OpenGL discards triangles before it fills
 them (rasterizer discard, OpenGL 4.6, 14.1). The switch is set in the context of the window. Blender draws 3D views in
@@ -32,7 +32,7 @@ class Pixels:
             (self._gl.glEnable if discard else self._gl.glDisable)(GL_RASTERIZER_DISCARD)
 
     def tick(self):
-        """To be called again and again: Blender turns the switch back whenever it changes a mask of what is written,
+        """To be called again and again: Blender turns the switch back with each change of a mask of what is written,
         and each window has a context."""
         self._set(not self.kept)
 
