@@ -1,5 +1,6 @@
 #include "bindings/pen_calls.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "riffler/geom/rolled_pose.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geom/math.hpp"

@@ -1,5 +1,6 @@
 #include "mesh/smooth_normals.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geom/directions.hpp"

@@ -1,6 +1,7 @@
 // Gives equal points the same index.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>

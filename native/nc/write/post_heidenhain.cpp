@@ -1,5 +1,6 @@
 // Heidenhain Klartext (TNC 640 user's manual, "M128" and "Three-dimensional tool compensation"): the control keeps the
 // tip, either with rotary axis angles in L blocks or with the tool's axis in LN blocks.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,5 @@
 // RS-274 as read by LinuxCNC and Fanuc-style controls.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>

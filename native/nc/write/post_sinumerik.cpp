@@ -1,5 +1,6 @@
 // Sinumerik 840D and 828D (Siemens, Programming Manual Job Planning, "Five-axis transformation"): the control keeps the
 // tip under TRAORI; blocks contain the rotary axes.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
