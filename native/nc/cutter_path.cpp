@@ -57,7 +57,8 @@ std::vector<CutterPath> checked(std::span<const CutterPath> paths) {
     CutterPath& path = out[k];
     const std::string name = "path " + std::to_string(k);
     if (path.poses.empty()) throw std::invalid_argument(name + " has no rows");
-    if (path.feed.size() == 1) path.feed.assign(path.poses.size(), path.feed[0]);
+    // A copy: assign may not read from the vector that it replaces.
+    if (path.feed.size() == 1) path.feed.assign(path.poses.size(), double{path.feed[0]});
     if (path.feed.size() != path.poses.size()) throw std::invalid_argument(name + ": one feed, or one per row");
     for (std::size_t row = 0; row < path.poses.size(); ++row) {
       path.poses[row] = checked_pose(path.poses[row], name, row);
