@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress fuzz scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress fuzz scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package release-linux clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -130,6 +130,10 @@ tutorials:  ## Do the tutorials in Blender's window and take their pictures: doc
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)
 	$(python) tools/package.py
+
+release-linux:  ## Build the wheel for every Linux with glibc 2.28 or later, by Zig's compiler, and compare its results with .venv's: dist/linux
+	@$(ready)
+	@$(python) tools/release_linux.py
 
 clean:  ## Remove what was built (not .venv and .envs)
 	rm -rf build out dist
