@@ -139,8 +139,11 @@ bool StarCollapser::fan(const std::int32_t* begin, const std::int32_t* end, cons
     const Vec3 &a = mesh_.vertices[face.v.y], &b = mesh_.vertices[face.v.z];
     face.normal = glm::normalize(glm::cross(a - c, b - c));
     face.error = bound;
-    for (const std::int32_t v : {face.v.x, face.v.y, face.v.z})
-      if (const std::int32_t s = slot(v); s >= 0 && !stars_[s].locked) around(s)[stars_[s].count++] = inside_[n];
+    for (const std::int32_t v : {face.v.x, face.v.y, face.v.z}) {
+      const std::int32_t s = slot(v);
+      see_normal(s, face.normal);
+      if (s >= 0 && !stars_[s].locked) around(s)[stars_[s].count++] = inside_[n];
+    }
   }
   return true;
 }

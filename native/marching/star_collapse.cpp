@@ -49,7 +49,7 @@ void StarCollapser::add(std::uint32_t triangle) {
     if (s < 0) continue;
     Star& star = stars_[s];
     if (star.count == 0) star.facing = faces_.back().normal;
-    if (!(glm::dot(star.facing, faces_.back().normal) > kCalm)) star.calm = false;
+    see_normal(s, faces_.back().normal);
     if (star.count == kMostFaces)
       star.locked = true;
     else
@@ -341,8 +341,7 @@ void StarCollapser::commit(std::int32_t from, std::int32_t to, double error, dou
     face.normal = glm::normalize(glm::cross(a - p, b - p));
     face.error = bound;
     around(to)[stars_[to].count++] = f;
-    for (const std::int32_t s : {to, slot(side.a), slot(side.b)})
-      if (s >= 0 && !(glm::dot(stars_[s].facing, face.normal) > kCalm)) stars_[s].calm = false;
+    for (const std::int32_t s : {to, slot(side.a), slot(side.b)}) see_normal(s, face.normal);
   }
   const auto again = [&](std::int32_t s) {
     if (s < 0) return;

@@ -104,6 +104,10 @@ class StarCollapser {
   }
   std::int32_t seen(std::int32_t v);
   bool is_calm(std::int32_t s) const { return s >= 0 && !stars_[s].locked && stars_[s].calm; }
+  /// Takes the normal of a face that is added to a star; s may be none.
+  void see_normal(std::int32_t s, const Vec3& normal) {
+    if (s >= 0 && !(glm::dot(stars_[s].facing, normal) > kCalm)) stars_[s].calm = false;
+  }
   bool gather(std::int32_t from, double limit);
   bool merge(std::int32_t from, double limit, int most_faces);
   struct Flat {

@@ -109,10 +109,6 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   const V size = hn::Add(hn::Add(rho, abs(z)), hn::Mul(set(2), speed));
   const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, size)));
   const V3 second = in_space(at.second);
-  // One of the sides may slide along itself, as the flat end of a tool on a level move does.
-  const M edge = both(close, hn::Lt(hn::Mul(slide, dot(second, velocity)), hn::Mul(rounding, square)));
-  const M smooth = without(hn::Le(abs(slide), hn::Mul(set(0.15), speed)), edge);
-  const V3 level = unit(less(n, hn::Div(slide, pick(still, set(1), square)), velocity));
   const V3 around{hn::Sub(hn::Mul(axis.y, aside.z), hn::Mul(axis.z, aside.y)),
                   hn::Sub(hn::Mul(axis.z, aside.x), hn::Mul(axis.x, aside.z)),
                   hn::Sub(hn::Mul(axis.x, aside.y), hn::Mul(axis.y, aside.x))};
@@ -125,6 +121,14 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   const V3 between{hn::Add(n.x, second.x), hn::Add(n.y, second.y), hn::Add(n.z, second.z)};
   const V sign = with_sign(set(1), dot(swept, choose(close, between, aside)));
   const V3 turned = choose(firm, scaled(swept, hn::Div(sign, pick(firm, length, set(1)))), n);
+  // One of the sides may slide along itself, as the flat end of a tool on a level move does. Where two sides join
+  // smoothly both do; there `swept` may consist of rounding, and then it is not between them.
+  const V least = hn::Sub(dot(n, second), rounding);
+  const M inside = both(hn::Ge(dot(turned, n), least), hn::Ge(dot(turned, second), least));
+  const M slides = hn::Lt(hn::Mul(slide, dot(second, velocity)), hn::Mul(rounding, square));
+  const M edge = both(both(close, slides), inside);
+  const M smooth = without(hn::Le(abs(slide), hn::Mul(set(0.15), speed)), edge);
+  const V3 level = unit(less(n, hn::Div(slide, pick(still, set(1), square)), velocity));
   return choose(ends_there, n, choose(smooth, level, turned));
 }
 

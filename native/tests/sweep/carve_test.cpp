@@ -398,6 +398,30 @@ TEST(Carve, NormalsAtARimAreThoseOfTheSweptVolumeOnLongMoves) {
   EXPECT_LT(glm::length(gradient + normal), 1e-4);
 }
 
+/// Where a ball becomes its shank, both slide along themselves at the side of a move, but there is no edge.
+TEST(Carve, NormalsWhereABallBecomesItsShankAreThoseOfBoth) {
+  Volume volume = Volume::block({{{0, 0, 0}, {12, 12, 8}}, 0.5, "xyz"});
+  // The shank begins at the height of rays.
+  carve(volume, cutters::ball(6, 40), std::vector<Pose>{{{-100, 6, 1.25}, {0, 0, 1}}, {{110.3, 6, 1.25}, {0, 0, 1}}});
+  const dexel::Grid& grid = volume.grids()[1];
+  int ends = 0;
+  for (int i = 0; i < grid.nu(); ++i)
+    for (int j = 0; j < grid.nv(); ++j)
+      for (std::size_t k = 0; k < grid.ray(i, j).size(); ++k) {
+        const dexel::Span& s = grid.ray(i, j)[k];
+        const dexel::SpanNormals& n = grid.ray_normals(i, j)[k];
+        if (std::abs(s.far - 3) < 1e-6) {
+          EXPECT_LT(glm::length(n.far.unpack() - Vec3(0, 1, 0)), 1e-4);
+          ++ends;
+        }
+        if (std::abs(s.near - 9) < 1e-6) {
+          EXPECT_LT(glm::length(n.near.unpack() - Vec3(0, -1, 0)), 1e-4);
+          ++ends;
+        }
+      }
+  EXPECT_EQ(ends, 2 * 24 * 8);
+}
+
 TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
