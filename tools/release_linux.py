@@ -47,7 +47,7 @@ def release_linux() -> Path:
         return made[0]
     say(f"riffler's wheel for {target.triple}")
     folder = target.folder / "dist"
-    for old in [*made, *folder.glob("*.whl")]:
+    for old in folder.glob("*.whl"):
         old.unlink()
     DIST.mkdir(parents=True, exist_ok=True)
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,6 +57,8 @@ def release_linux() -> Path:
     environment = zig.environment(target) | {"CMAKE_ARGS": " ".join(definitions)}
     run(PYTHON, "-c", HOOK, folder, json.dumps(settings), env=environment)
     (built,) = folder.glob("riffler-*.whl")
+    for old in made:
+        old.unlink()
     run(PYTHON, "-m", "auditwheel", "repair", "--plat", TAG, "--wheel-dir", DIST, built)
     (made,) = DIST.glob("riffler-*.whl")
     if faults := symbol_versions.faults(made, GLIBC, FROM_SYSTEM):
