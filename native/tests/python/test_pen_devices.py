@@ -64,7 +64,8 @@ def escaped(report: bytes) -> bytes:
 def plugged(tmp_path):
     """Runs a command of riffler where the devices are plugged in: (vendor, product, name, descriptor, *features).
 
-    `says`: reports that the first one sends, one each 20 ms.
+    `says`: reports that the first one sends, one each 20 ms from the start of the process: enough for a computer on
+    which Python takes seconds to start.
     """
 
     def run(*words: str, devices: list[tuple], says: tuple[bytes, ...] = ()) -> subprocess.CompletedProcess:
@@ -168,7 +169,7 @@ def test_each_reason_is_reported(plugged):
 @virtual
 def test_a_pucks_noise_is_measured_and_its_bubble_is_larger(plugged):
     puck = (0x256F, 0xC631, "SpaceMouse Pro Wireless", PUCK)
-    noise = tuple(b"\x01" + struct.pack("<6h", 14 * (-1) ** k, 0, 0, 0, 0, 7) for k in range(100))
+    noise = tuple(b"\x01" + struct.pack("<6h", 14 * (-1) ** k, 0, 0, 0, 0, 7) for k in range(1000))
     words = "pen", "calibrate", "--yes", "--seconds", "1", "--json"
     done = plugged(*words, devices=[puck], says=noise)
     assert done.returncode == 0, done.stderr
@@ -176,7 +177,7 @@ def test_a_pucks_noise_is_measured_and_its_bubble_is_larger(plugged):
     assert data["device"] == "spacemouse" and data["noise"] == {"moving": 0.04, "turning": 0.02}  # 14 and 7 of 350
     assert data["bubble"] == 0.07
     touched = plugged(
-        *words, devices=[puck], says=tuple(b"\x01" + struct.pack("<6h", 300, k, 0, 0, 0, 0) for k in range(99))
+        *words, devices=[puck], says=tuple(b"\x01" + struct.pack("<6h", 300, k, 0, 0, 0, 0) for k in range(999))
     )
     assert touched.returncode == 1 and not json.loads(touched.stdout)["fits"]
     still = json.loads(plugged(*words, devices=[puck]).stdout)
@@ -186,7 +187,7 @@ def test_a_pucks_noise_is_measured_and_its_bubble_is_larger(plugged):
 @virtual
 def test_a_puck_is_monitored_without_force(plugged):
     puck = (0x256F, 0xC631, "SpaceMouse Pro Wireless", PUCK)
-    pushed = tuple(b"\x01" + struct.pack("<6h", 350, 0, 0, 0, 0, k % 2) for k in range(100))
+    pushed = tuple(b"\x01" + struct.pack("<6h", 350, 0, 0, 0, 0, k % 2) for k in range(1000))
     done = plugged("pen", "monitor", "--seconds", "1.5", "--json", devices=[puck], says=pushed)
     assert done.returncode == 0, done.stderr
     data = json.loads(done.stdout)
