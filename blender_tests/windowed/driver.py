@@ -72,7 +72,7 @@ class Screen:
         """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels
         that are still moving, and a renderer on a busy computer, get time to match it. vary: kinds of areas, and boxes,
         that may differ each time."""
-        yield from self.pixels.fill(self.window)
+        yield from self.pixels.fill_again(self.window)
         for pause in (0.5, 1.0, 2.0, 4.0, 0):
             complaint = self._shoot(name, vary)
             if not complaint:
@@ -94,7 +94,7 @@ class Screen:
         from`."""
         if pixels.NONE:
             return
-        yield from self.pixels.fill(self.window)
+        yield from self.pixels.fill_again(self.window)
         self.take(name)
         self.pixels.kept = False
 

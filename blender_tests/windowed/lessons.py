@@ -83,6 +83,7 @@ def picture(screen, name, box=None):
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
     screen.draw_smoothly(True)
+    yield from screen.pixels.fill_again(screen.window)
     yield 0.4
     command = ["import", "-window", "root"]
     if box is not None:
@@ -91,6 +92,7 @@ def picture(screen, name, box=None):
         command += ["-crop", crop, "+repage"]
     subprocess.run([*command, "-strip", "+dither", "-colors", str(COLOURS), f"PNG8:{path}"], check=True)
     screen.draw_smoothly(False)
+    screen.pixels.kept = False
     size = path.stat().st_size
     assert 2_000 < size < 250_000, f"{path}: {size} bytes"
 

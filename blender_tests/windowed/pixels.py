@@ -36,7 +36,7 @@ class Pixels:
         and each window has a context."""
         self._set(not self.kept)
 
-    def fill(self, window):
+    def fill_again(self, window):
         """Fills from here on, beginning with the whole window: steps to `yield from`."""
         if self.kept:
             return
