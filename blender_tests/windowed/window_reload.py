@@ -233,8 +233,8 @@ def steps(screen):
             yield 0.5
             enable()
             whole(before)
-            new = [line for line in watch.left() if line not in first]
-            assert [line for line in first if line not in watch.left()] == [] and not new, new
+            now = watch.left()
+            assert set(now) == set(first), sorted(set(now) ^ set(first))
             yield 1.0
         # and it works
         whole_volume = cut.state()[0]
