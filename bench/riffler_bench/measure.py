@@ -61,6 +61,11 @@ def watched(items: Sequence[T], progress: Progress) -> Iterator[T]:
         yield item
 
 
+def shares(progress: Progress) -> Callable[[float, float], Progress]:
+    """Progress of a part that goes from share a to share b of the whole."""
+    return (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+
+
 def cores() -> float:
     """How many processors two busy threads get at the moment; they hash, which needs no lock of Python's."""
     block = bytes(1 << 25)

@@ -9,7 +9,7 @@ import numpy as np
 from riffler import Volume
 
 from .. import errors, report, scenes
-from ..measure import Progress, Settings, Yardstick, watched
+from ..measure import Progress, Settings, Yardstick, shares, watched
 from ..report import Column, Report
 
 TOLERANCES = (0.1, 0.01, 0.001, 0.0001)
@@ -32,7 +32,7 @@ THREE_COLUMNS = (
 
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("b5x", {"tolerances": TOLERANCES, "targets": TARGETS})
-    share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+    share = shares(progress)
     path(out, settings, share(0, 0.6))
     single(out, settings, share(0.6, 1))
     summary(out)

@@ -13,11 +13,11 @@ from riffler import Mesh
 
 from .. import _bench as core
 from .. import exact, report
-from ..measure import Progress, Settings, child, threads, watched
+from ..measure import Progress, Settings, child, shares, threads, watched
 from ..report import Column, Report
 from ..rivals import LeftOutError, program
 from .decimate import drawn
-from .mesh import BAD, DEFECT_COLUMNS, OTHER
+from .mesh import DEFECT_COLUMNS, defects
 
 TOLERANCES = (0.05, 0.01, 0.005, 0.001, 0.0005)  # mm
 TARGETS = {"ratio": 1.3, "fewer_xyz": 60, "fewer_z": 10}  # at 0.005 mm
@@ -38,7 +38,7 @@ DISTANCES = (
 
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("detail", {"targets": TARGETS})
-    share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+    share = shares(progress)
     with tempfile.TemporaryDirectory() as folder:
         tolerances(out, settings, Path(folder), share(0, 0.6))
         growth(out, settings, Path(folder), share(0.6, 0.7))
@@ -61,12 +61,10 @@ def judged(folder: Path, name: str, tolerance: float, out: Report, points: int) 
             for one, other in ((less, full), (full, less))
         )
     less.write(folder / "judged.stl")
-    audit = Mesh.read(folder / "judged.stl").audit()
     figures = {
         "there_mm": float(there.max()),
         "back_mm": float(back.max()),
-        "bad": sum(int(getattr(audit, kind)) for kind in BAD),
-        "others": sum(int(getattr(audit, kind)) for kind in OTHER),
+        **defects(Mesh.read(folder / "judged.stl")),
     }
     out.check(not figures["bad"] + figures["others"], f"{name}: {figures}")
     worst = max(figures["there_mm"], figures["back_mm"])

@@ -14,7 +14,7 @@ from riffler import Mesh, Volume
 
 from .. import _bench as core
 from .. import exact, report, scenes
-from ..measure import Progress, Settings, child, how_many, threads, watched
+from ..measure import Progress, Settings, child, how_many, shares, threads, watched
 from ..report import Column, Report
 from ..rivals import LeftOutError, ask, program
 
@@ -39,7 +39,7 @@ TARGETS = {"b200_max": 0.0205, "b200_mean": 2e-5, "edge_max": 0.02}
 
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("mesh", {"targets": TARGETS})
-    share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+    share = shares(progress)
     with tempfile.TemporaryDirectory() as folder:
         b200(out, settings, Path(folder), share(0, 0.6))
         edges(out, settings, Path(folder), share(0.6, 0.75))
@@ -135,18 +135,21 @@ def field_mesh(
     return timing, Mesh(np.load(folder / "mesh.vertices.npy"), np.load(folder / "mesh.triangles.npy"))
 
 
+def defects(mesh: Mesh) -> dict[str, int]:
+    audit = mesh.audit()
+    return {kind: sum(int(getattr(audit, name)) for name in names) for kind, names in (("bad", BAD), ("others", OTHER))}
+
+
 def judged(mesh: Mesh, folder: Path) -> dict[str, Any]:
     """Defects of the mesh that comes back from a binary STL, and its distance from B200's exact surface."""
     mesh.write(folder / "judged.stl")
     mesh = Mesh.read(folder / "judged.stl")
-    audit = mesh.audit()
     vertices = np.asarray(mesh.vertices)
     off = exact.from_surface(vertices)
     triangles = np.asarray(mesh.triangles)
     middle = exact.from_surface(vertices[triangles[:: -(-len(triangles) // MIDDLES)]].mean(1))
     return {
-        "bad": sum(int(getattr(audit, name)) for name in BAD),
-        "others": sum(int(getattr(audit, name)) for name in OTHER),
+        **defects(mesh),
         **spread("", off),
         **spread("middle_", middle),
     }
@@ -183,8 +186,7 @@ def edges(out: Report, settings: Settings, folder: Path, progress: Progress) -> 
                 continue
             mesh.write(folder / "box.stl")
             mesh = Mesh.read(folder / "box.stl")
-            audit = mesh.audit()
-            counts = (sum(int(getattr(audit, name)) for name in names) for names in (BAD, OTHER))
+            counts = defects(mesh).values()
             with threads(None):
                 off = (core.mesh_distances(points, mesh) for points in (box.edges(), box.corners()))
                 found.setdefault(engine, []).append((*off, *counts))

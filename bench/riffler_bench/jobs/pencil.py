@@ -16,7 +16,7 @@ from riffler import Mesh, Tool, plan
 from .. import _bench as core
 from .. import baselines, report, valleys
 from ..curves import Agreement, Segments, compare
-from ..measure import Progress, Settings, child, steady, threads, watched
+from ..measure import Progress, Settings, child, shares, steady, threads, watched
 from ..pencil_cases import TOLERANCE, TOOL, Case, case, cases, contacts, digest, lines_of, picture, turned
 from ..remesh import STEP, WAYS, Patch, Surface, mesh
 from ..report import Column, Report
@@ -31,7 +31,7 @@ KIND = baselines.PIXEL  # added to the limit at which the baselines are judged
 
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("pencil", {"radius": valleys.R, "tolerance": TOLERANCE, "pixel": baselines.PIXEL})
-    share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+    share = shares(progress)
     curves(out, settings, share(0, 0.7))
     tolerances(out, settings, share(0.7, 0.8))
     scale(out, settings, share(0.8, 0.9))

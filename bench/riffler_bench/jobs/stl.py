@@ -12,7 +12,7 @@ import numpy as np
 from riffler import Mesh, Volume
 
 from .. import parts, report
-from ..measure import Progress, Settings, child, watched
+from ..measure import Progress, Settings, child, shares, watched
 from ..report import Column, Report
 from ..rivals import LeftOutError, ask
 
@@ -45,7 +45,7 @@ def winding_volume(mesh: Mesh, cells: int) -> tuple[float, float]:
 
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("stl", {})
-    share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
+    share = shares(progress)
     rays(out, settings, share(0, 0.75))
     openings(out, settings, share(0.75, 0.8))
     files(out, settings, share(0.8, 1))
