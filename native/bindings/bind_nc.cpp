@@ -112,6 +112,9 @@ options : dict, optional
       the number of the offset D or of the tool.
     - ``units``: "mm" or "inch", before the program declares them.
     - ``arc_tolerance`` (mm, 0.005): by which an arc's end may miss its circle.
+    - ``arc_centres``: "relative" (to the arc's start) or "absolute", until G90.1 or G91.1.
+    - ``first_feed`` (mm/min): of feed moves before the first F.
+    - ``first_motion``: "none", "G0" or "G1": of axis words before the first motion.
     - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: machine positions of work offsets and homes, three to
       six numbers.
     - ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` (1e6) of

@@ -14,8 +14,8 @@ namespace {
 
 [[noreturn]] void fail_miss(double miss) {
   char text[128];
-  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm: option arc_tolerance allows more",
-                miss);
+  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm%s", miss,
+                miss <= kMaxArcMiss ? ": option arc_tolerance allows more" : "");
   throw std::invalid_argument(text);
 }
 

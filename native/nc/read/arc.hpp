@@ -21,6 +21,8 @@ struct Arc {
 
 /// Largest distance of an arc's end from its circle, mm: stricter than LinuxCNC, which accepts 0.028 and more.
 inline constexpr double kArcMiss = 0.005;
+/// The largest value of option arc_tolerance, mm.
+inline constexpr double kMaxArcMiss = 1;
 /// The same for an arc given by its radius, and the smallest radius about a given centre, mm: LinuxCNC's values.
 inline constexpr double kRadiusMiss = 0.00254, kMinRadius = 0.00127;
 /// Ends closer than this (mm) are one point, and the arc a full circle.

@@ -45,13 +45,23 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   given_.units = taken.given("units");
   if (taken.word("units", {"mm", "inch"}, "mm") == "inch") modes_.unit = kInch;
   given_.arc_miss = taken.positive("arc_tolerance").value_or(kArcMiss);
+  take_start(taken);
   take_positions(taken);
   taken.done();
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
-  if (given_.arc_miss > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
+  if (given_.arc_miss > kMaxArcMiss) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
   make_compensation();
+}
+
+/// What holds on a control before the program says otherwise.
+void NcInterpreter::take_start(OptionReader& taken) {
+  modes_.absolute_centre = taken.word("arc_centres", {"relative", "absolute"}, "relative") == "absolute";
+  given_.feed = taken.positive("first_feed");
+  given_.motion_name = taken.word("first_motion", {"none", "G0", "G1"}, "none");
+  if (given_.motion_name != "none") given_.motion = given_.motion_name == "G0" ? 0 : 10;
+  if (given_.feed && !(*given_.feed <= kMaxFeed)) throw std::invalid_argument("option first_feed is out of range");
 }
 
 bool NcInterpreter::step() {

@@ -63,7 +63,10 @@ class NcInterpreter final : private NcPredefined {
     bool skip_unknown = false;
     CompensationRule compensation = CompensationRule::Error;
     double arc_miss = kArcMiss;
-    bool units = false;                                          // the option "units" was given
+    bool units = false;          // the option "units" was given
+    std::optional<double> feed;  // mm/min, until the first F
+    int motion = -1;             // until the first one, the code times ten; −1: none
+    std::string motion_name;
     std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameter numbers
   };
   /// What is known of an axis's position.
@@ -118,6 +121,7 @@ class NcInterpreter final : private NcPredefined {
   void stop();
 
   // interpreter_machine.cpp: machine positions, and knowledge of work offsets.
+  void take_start(OptionReader& options);
   void take_positions(OptionReader& options);
   void go_home(int code);
   Joints machine_target();
@@ -165,13 +169,15 @@ class NcInterpreter final : private NcPredefined {
   void move(int code);
   void refuse(int code);
   bool axes_are_taken() const;
-  void check_feed() const;
+  void check_feed();
+  void motion_at_start(int code);
   Joints target();
   void line_to(const Joints& to, bool rapid);
   void straight_to(const Joints& to, const NcRowWords& words);
   void arc_to(const Joints& to, bool clockwise);
   Arc arc_of_words(const Joints& to, bool clockwise);
   Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
+  void check_centre(const Vec2& from, const Vec2& end, const Vec2& centre, const Vec2& other);
   void spline_to(const Joints& to, int code);
   void drill_at(int code);
   void take_cycle_words(int code);
@@ -200,6 +206,9 @@ class NcInterpreter final : private NcPredefined {
   std::array<std::array<bool, 6>, 2> home_known_{}, home_in_part_{};
   Modes modes_;
   int motion_ = -1, before_cycle_ = -1;  // the code times ten; −1: none
+  bool chosen_ = false;                  // the program has named a motion
+  bool feed_noted_ = false;              // a note says that option first_feed was used
+  bool feed_given_ = false;              // the program has named a feed above 0
   bool cancelled_ = false;               // by G80
   NcFrame frame_;
   Cycle cycle_;

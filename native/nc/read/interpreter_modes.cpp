@@ -26,6 +26,7 @@ void NcInterpreter::feed_and_speed() {
   if (words_->has('F')) {
     modes_.feed = words_->value('F', kMaxFeed / kInch) * (modes_.feed_mode == 930 ? 1 : modes_.unit);
     if (modes_.feed < 0) place_.fail("F is negative");
+    feed_given_ = feed_given_ || modes_.feed > 0;
   }
   if (words_->has('S')) {
     modes_.speed = words_->value('S', kMaxSpindle);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "nc/limits.hpp"
 #include "nc/read/drill_cycle.hpp"
@@ -39,6 +41,7 @@ void NcInterpreter::motion() {
     if (axes_are_taken() && code != 800 && words_->has_axes() && !(code <= 10 && goes_home()))
       place_.fail("two codes that both use axis words: they need a block each");
     choose_motion(code);
+    chosen_ = chosen_ || code != 800;
   }
   if (code >= 0 || by_machine) refuse(code == 800 ? -1 : motion_);
   if (axes_are_taken()) return;
@@ -49,7 +52,7 @@ void NcInterpreter::motion() {
     if (is_drill_cycle(code)) place_.fail("a canned cycle without axis words");
     return;
   }
-  if (motion_ < 0 || code == 800) place_.fail("axis words without a motion (G0, G1, G2, G3)");
+  if (motion_ < 0 || code == 800) motion_at_start(code);
   if (cancelled_ && !by_machine)
     note("motion", "axis words after G80: taken as the motion from before the cycle, as Fanuc's controls do");
   cancelled_ = false;
@@ -118,7 +121,22 @@ void NcInterpreter::refuse(int code) {
   }
 }
 
-void NcInterpreter::check_feed() const {
+/// The motion that the control has when it is switched on, where the program has not named one.
+void NcInterpreter::motion_at_start(int code) {
+  if (code == 800 || chosen_) place_.fail("axis words without a motion (G0, G1, G2, G3)");
+  if (given_.motion < 0)
+    place_.fail(
+        "axis words without a motion (G0, G1, G2, G3): option first_motion names the one at the control's start");
+  choose_motion(given_.motion);
+  note("motion", "axis words before the first motion: taken as " + given_.motion_name + ", by option first_motion");
+}
+
+void NcInterpreter::check_feed() {
+  if (!(modes_.feed > 0) && given_.feed && modes_.feed_mode == 940 && !feed_given_) {
+    modes_.feed = *given_.feed;
+    if (!std::exchange(feed_noted_, true))
+      note("feed", "a feed move before the first F: taken at the feed of option first_feed");
+  }
   if (modes_.feed > 0) {
     if (modes_.feed_mode != 950) return;
     if (modes_.surface_speed) place_.fail("a feed per revolution (G95) under G96: the spindle's speed is not known");
@@ -126,8 +144,10 @@ void NcInterpreter::check_feed() const {
     if (!(modes_.feed * modes_.speed <= kMaxFeed)) place_.fail("F is out of range");
     return;
   }
-  place_.fail(modes_.feed_mode == 930 ? "a feed move without F: under G93 every block needs its own"
-                                      : "a feed move without F");
+  if (modes_.feed_mode == 930) place_.fail("a feed move without F: under G93 every block needs its own");
+  place_.fail(modes_.feed_mode == 950 || feed_given_
+                  ? "a feed move without F"
+                  : "a feed move without F: option first_feed, mm/min, holds until the first F");
 }
 
 Joints NcInterpreter::target() {
@@ -209,12 +229,28 @@ Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
                          std::max(kRadiusMiss, given_.arc_miss == kArcMiss ? 0 : given_.arc_miss));
   }
   if (!offsets) place_.fail("an arc without a centre (I, J, K) or R");
-  if (modes_.absolute_centre && !(words_->has(kCentre[u]) && words_->has(kCentre[v])))
-    place_.fail(std::string("under G90.1 an arc needs both ") + kCentre[u] + " and " + kCentre[v]);
-  Vec2 centre = modes_.absolute_centre ? Vec2(0, 0) : from;
-  if (words_->has(kCentre[u])) centre.x += words_->value(kCentre[u], kMaxLength) * modes_.unit;
-  if (words_->has(kCentre[v])) centre.y += words_->value(kCentre[v], kMaxLength) * modes_.unit;
+  const bool both = words_->has(kCentre[u]) && words_->has(kCentre[v]);
+  if (modes_.absolute_centre && !both)
+    place_.fail(std::string("with absolute centres (G90.1) an arc needs both ") + kCentre[u] + " and " + kCentre[v]);
+  const auto offset = [&](std::size_t axis) {
+    return words_->has(kCentre[axis]) ? words_->value(kCentre[axis], kMaxLength) * modes_.unit : 0;
+  };
+  const Vec2 words(offset(u), offset(v)), centre = modes_.absolute_centre ? words : from + words;
+  if (both) check_centre(from, end, centre, modes_.absolute_centre ? from + words : words);
   return arc_about(from, end, centre, clockwise, given_.arc_miss);
+}
+
+/// Fails if the arc's end misses its circle, and would not if I, J and K had the other meaning: controls differ in the
+/// one they begin with.
+void NcInterpreter::check_centre(const Vec2& from, const Vec2& end, const Vec2& centre, const Vec2& other) {
+  const auto miss = [&](const Vec2& c) { return std::abs(glm::length(end - c) - glm::length(from - c)); };
+  if (miss(centre) <= given_.arc_miss || miss(other) > given_.arc_miss) return;
+  char text[64];
+  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm", miss(centre));
+  place_.fail(std::string(text) +
+              (modes_.absolute_centre ? ", and fits it with a centre relative to its start (G91.1)"
+                                      : ", and fits it with an absolute centre (G90.1)") +
+              ": option arc_centres");
 }
 
 /// G5: a cubic with control points I J from its start and P Q from its end; G5.1: a quadratic, I J from its start.
@@ -281,13 +317,12 @@ void NcInterpreter::take_cycle_words(int code) {
     if (words_->has('Q')) cycle_.peck = words_->value('Q', kMaxLength) * modes_.unit;
     if (!(cycle_.peck > 0)) place_.fail("Q must be positive");
   }
+  // Fanuc's and Haas's controls accept a dwell in each drilling cycle.
+  if (words_->has('P') && words_->value('P', 1e6) < 0) place_.fail("P is negative");
   if (is_tapping_cycle(code)) {
-    words_->pass_over("PJ");
+    words_->pass_over("J");
     cycle_.peck = words_->has('Q') ? words_->value('Q', kMaxLength) * modes_.unit : 0;
     if (cycle_.peck < 0) place_.fail("Q must be positive");
-  }
-  if (code == 820 || code == 860 || code == 890) {
-    if (words_->has('P') && words_->value('P', 1e6) < 0) place_.fail("P is negative");
   }
   if (cycle_.code < 0) cycle_.level = at_[modes_.plane[2]];
   cycle_.code = code;

@@ -59,7 +59,7 @@ void SinumerikInterpreter::take_options(const ReadOptions& options) {
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
                                 ": code for a Sinumerik control has tip coordinates (TRAORI): tcp must not be False");
-  if (arc_miss_ > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
+  if (arc_miss_ > kMaxArcMiss) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);

@@ -63,7 +63,8 @@ TEST(DrillCycle, IsRefusedWithoutItsWords) {
   };
   for (const auto& [text, what] : cases)
     EXPECT_EQ(nc_error(std::string("F100\n") + text), std::string("line 2: ") + what + " [" + text + "]");
-  EXPECT_EQ(nc_error("G0 X1\nG81 X1 R1 Z-1"), "line 2: a feed move without F [G81 X1 R1 Z-1]");
+  EXPECT_EQ(nc_error("G0 X1\nG81 X1 R1 Z-1"),
+            "line 2: a feed move without F: option first_feed, mm/min, holds until the first F [G81 X1 R1 Z-1]");
 }
 
 TEST(NcDrillCycle, TooManyMovesAreRefusedBeforeTheyAreMade) {

@@ -78,15 +78,17 @@ TEST(Reader, RefusesUnknownBlocksAndNamesFileAndLine) {
       {"G0 X1 (never closed", "unclosed comment"},
       {"(a (b) X1", "unclosed comment"},
       {"G0 X1 )", "unexpected ')'"},
-      {"G1 X1", "a feed move without F"},
+      {"G1 X1", "a feed move without F: option first_feed, mm/min, holds until the first F"},
       {"F100\nG93 G1 X1", "a feed move without F: under G93 every block needs its own"},
       {"G93 G1 X1 F2\nX2", "a feed move without F: under G93 every block needs its own"},
       {"G93 G1 X1 F2\nG94 X2", "a feed move without F"},
-      {"G1 X1 F0", "a feed move without F"},
+      {"G1 X1 F0", "a feed move without F: option first_feed, mm/min, holds until the first F"},
       {"G1 X1 F-5", "F is negative"},
       {"S-1 M3", "S is negative"},
-      {"X1 F1", "axis words without a motion (G0, G1, G2, G3)"},
-      {"G80\nX2", "axis words without a motion (G0, G1, G2, G3)"},
+      {"X1 F1",
+       "axis words without a motion (G0, G1, G2, G3): option first_motion names the one at the control's start"},
+      {"G80\nX2",
+       "axis words without a motion (G0, G1, G2, G3): option first_motion names the one at the control's start"},
       {"G4", "G4 needs P"},
       {"G4 P1 X1", "axis words together with G4"},
       {"G0 X1 R1", "R has no meaning in this block"},
@@ -106,9 +108,16 @@ TEST(Reader, RefusesUnknownBlocksAndNamesFileAndLine) {
       {"G2 X1 I1 R1 F1", "an arc with both R and a centre"},
       {"G2 X1 K1 I1 F1", "K does not lie in the arc's plane"},
       {"G2 X2 I1.01 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance allows more"},
+      {"G2 X5 I1 F1", "the arc's end misses its circle by 3.0000 mm"},
+      {"G0 X10\nG3 X0 Y10 I0 J0 F1",
+       "the arc's end misses its circle by 14.1421 mm, and fits it with an absolute centre (G90.1): option "
+       "arc_centres"},
+      {"G0 X10\nG90.1 G3 X0 Y10 I-10 J0 F1",
+       "the arc's end misses its circle by 5.8579 mm, and fits it with a centre relative to its start (G91.1): option "
+       "arc_centres"},
       {"G2 X2 R0.99 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance allows more"},
       {"G2 X0 Y0 R5 F1", "a full circle by R has no centre"},
-      {"G90.1 G2 X2 I1 F1", "under G90.1 an arc needs both I and J"},
+      {"G90.1 G2 X2 I1 F1", "with absolute centres (G90.1) an arc needs both I and J"},
       {"G91 G1 X999999 F1\nX999999", "X is out of range"},
   };
   for (const auto& [text, what] : cases) {
@@ -144,9 +153,10 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
             "machine");
   const std::string unknown = error("tcp", {{"chord", 1.0}});
   EXPECT_TRUE(unknown.starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary")) << unknown;
-  EXPECT_TRUE(
-      unknown.ends_with("cutter_compensation, tool_diameters, subroutines, parameters, units, arc_tolerance, g54, g55, "
-                        "g56, g57, g58, g59, g59_1, g59_2, g59_3, g28, g30"))
+  EXPECT_TRUE(unknown.ends_with(
+      "cutter_compensation, tool_diameters, subroutines, parameters, units, arc_tolerance, arc_centres, first_feed, "
+      "first_motion, g54, g55, "
+      "g56, g57, g58, g59, g59_1, g59_2, g59_3, g28, g30"))
       << unknown;
   EXPECT_NE(error("tcp", {{"chord_tolerance", -1.0}}), "");
   EXPECT_NE(error("tcp", {{"chord_tolerance", std::string("small")}}), "");
