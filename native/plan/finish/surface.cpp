@@ -209,7 +209,8 @@ bool FinishSurface::rolls(const SurfacePoint& p) const {
   return size > 0 && on_edge(towards / size);
 }
 
-/// The row's end between a selected point `in` and another point `out`, within the tolerance.
+/// The row's end between a selected point `in` and another point `out`, within the tolerance. At a riser the line
+/// between both is far from the surface, so the end gets the surface's own height there.
 Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) const {
   double low = 0, high = 1;
   const double length = glm::length(out.tip - in.tip);
@@ -217,7 +218,9 @@ Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) cons
     const double middle = 0.5 * (low + high);
     (wanted(at(Vec2(glm::mix(in.tip, out.tip, middle)))) ? low : high) = middle;
   }
-  return glm::mix(in.tip, out.tip, low);
+  if (low == 0) return in.tip;
+  const Vec3 end = glm::mix(in.tip, out.tip, low), tip = at(Vec2(end)).tip;
+  return std::abs(tip.z - end.z) <= tolerance_ ? end : tip;
 }
 
 std::vector<std::vector<Vec3>> FinishSurface::meant_pieces(const std::vector<SurfacePoint>& points,

@@ -82,6 +82,15 @@ def test_a_flat_end_finishes_level_faces_in_every_pattern(pattern):
     assert np.abs(cuts[:, None] - [3, 7, 10]).min(axis=1).max() <= TOLERANCE
 
 
+def test_a_row_that_ends_at_a_riser_ends_on_its_own_face():
+    """Where the part lies on the grid of places decides where rows end; they did so between both faces."""
+    part = steps()
+    moved = riffler.Mesh(np.array(part.vertices) + [0.26018, -0.40367, 0.0], part.triangles)
+    op = finished(moved, FLAT, "scallop", degrees(0, 5))
+    cuts = op.poses[op.kind == 2][:, 2]
+    assert np.abs(cuts[:, None] - [3, 7, 10]).min(axis=1).max() <= TOLERANCE
+
+
 @pytest.mark.parametrize("pattern", plan.PATTERNS)
 def test_the_allowance_stays_on_walls_and_on_tops(pattern):
     part, slopes = cone(), degrees(30 if pattern == "waterline" else 0, 65)
