@@ -3,33 +3,25 @@
 #include <chrono>
 #include <thread>
 
+#include "bindings/take_gil.h"
+
 namespace riffler::bindings {
 
 namespace {
 
-[[noreturn]] void wait_for_the_end() noexcept {
+[[noreturn]] void wait_for_the_end() {
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 }  // namespace
 
-// The only thing thrown here is the unwinding by which Python ends the thread; it may be caught, but not ended.
-
 NoGil::~NoGil() {
-  try {
-    PyEval_RestoreThread(state_);
-  } catch (...) {
-    wait_for_the_end();
-  }
+  riffler_restore_thread(state_);
 }
 
 WithGil::WithGil() {
   if (!Py_IsInitialized()) wait_for_the_end();
-  try {
-    state_ = PyGILState_Ensure();
-  } catch (...) {
-    wait_for_the_end();
-  }
+  state_ = riffler_ensure_gil();
 }
 
 }  // namespace riffler::bindings

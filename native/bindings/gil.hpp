@@ -7,7 +7,7 @@ namespace riffler::bindings {
 
 /// Releases Python's lock for its life. While Python ends, a daemon thread never gets the lock again: Python
 /// before 3.14 ends such a thread by unwinding it, which no destructor survives. Here it waits for the end of the
-/// process instead, as it does in Python 3.14.
+/// process instead, as it does in Python 3.14 (take_gil.h).
 class NoGil {
  public:
   NoGil() : state_(PyEval_SaveThread()) {}
