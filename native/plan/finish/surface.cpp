@@ -210,7 +210,7 @@ bool FinishSurface::rolls(const SurfacePoint& p) const {
 }
 
 /// The row's end between a selected point `in` and another point `out`, within the tolerance. At a riser the line
-/// between both is far from the surface, so the end gets the surface's own height there.
+/// between both is far from the surface, so the end gets the surface's own height there, if the way to it is free.
 Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) const {
   double low = 0, high = 1;
   const double length = glm::length(out.tip - in.tip);
@@ -220,7 +220,8 @@ Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) cons
   }
   if (low == 0) return in.tip;
   const Vec3 end = glm::mix(in.tip, out.tip, low), tip = at(Vec2(end)).tip;
-  return std::abs(tip.z - end.z) <= tolerance_ ? end : tip;
+  if (std::abs(tip.z - end.z) <= tolerance_) return end;
+  return above(in.tip, tip) > 0 ? in.tip : tip;
 }
 
 std::vector<std::vector<Vec3>> FinishSurface::meant_pieces(const std::vector<SurfacePoint>& points,
