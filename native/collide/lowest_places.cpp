@@ -40,12 +40,14 @@ struct Ridge {
   }
 };
 
-/// The distance near a point to second order: linear along the plane's normal, curved around the axis and along the
-/// outline.
+/// The distance near a point to second order: curved around the axis and along the outline, and along the normal, too,
+/// by the larger of both curvatures. The distance itself is straight there, but its minimum is that of a convex
+/// function of it, and with this term the square of the distance from a ball's centre or a cylinder's axis is exact:
+/// from the side of a ball a step ends at the minimum and not beyond it.
 class Quadratic {
  public:
   HWY_INLINE Quadratic(const ToolFrame& frame, const Radial& r, V rho, const Plane& p)
-      : around_(hn::Div(max(p.out, zero()), max(rho, set(1e-9)))), along_(p.curvature) {
+      : around_(hn::Div(max(p.out, zero()), max(rho, set(1e-9)))), along_(p.curvature), across_(max(around_, along_)) {
     const V ax = set(frame.axis.x), ay = set(frame.axis.y), az = set(frame.axis.z);
     normal_ = {add(mul(p.out, r.x), mul(p.up, ax)), add(mul(p.out, r.y), mul(p.up, ay)),
                add(mul(p.out, r.z), mul(p.up, az))};
@@ -64,12 +66,12 @@ class Quadratic {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const V dt = sub(t[j], t[i]), dm = sub(m[j], m[i]), dg = sub(g[j], g[i]);
-      const V slope = add(dg, bent(t[i], dt, m[i], dm)), bend = bent(dt, dt, dm, dm);
+      const V slope = add(dg, bent(t[i], dt, m[i], dm, g[i], dg)), bend = bent(dt, dt, dm, dm, dg, dg);
       const M curved = hn::Gt(bend, set(1e-300));
       const V s = pick(curved, min(max(hn::Div(hn::Neg(slope), pick(curved, bend, set(1))), zero()), set(1)),
                        pick(hn::Lt(slope, zero()), set(1), zero()));
-      const V value =
-          add(add(g[i], mul(set(0.5), bent(t[i], t[i], m[i], m[i]))), mul(s, add(slope, mul(set(0.5), mul(s, bend)))));
+      const V value = add(add(g[i], mul(set(0.5), bent(t[i], t[i], m[i], m[i], g[i], g[i]))),
+                          mul(s, add(slope, mul(set(0.5), mul(s, bend)))));
       const M lower = hn::Lt(value, least);
       least = pick(lower, value, least), share = pick(lower, s, share);
       from_x = pick(lower, corners.x[i], from_x), from_y = pick(lower, corners.y[i], from_y);
@@ -90,14 +92,18 @@ class Quadratic {
     }
   };
 
-  /// The second-order form of two vectors, given by their components around the axis and along the outline.
-  HWY_INLINE V bent(V t, V u, V m, V n) const { return add(mul(around_, mul(t, u)), mul(along_, mul(m, n))); }
+  /// The second-order form of two vectors, given by their components around the axis, along the outline and along the
+  /// normal.
+  HWY_INLINE V bent(V t, V u, V m, V n, V g, V h) const {
+    return add(add(mul(around_, mul(t, u)), mul(along_, mul(m, n))), mul(across_, mul(g, h)));
+  }
 
   /// Where the minimum over the whole plane lies within the triangle, it is the place.
   HWY_INLINE void within(const FromPoints& corners, const V* g, const V* t, const V* m, V& x, V& y, V& z) const {
     const V t1 = sub(t[1], t[0]), t2 = sub(t[2], t[0]), m1 = sub(m[1], m[0]), m2 = sub(m[2], m[0]);
-    const V a = bent(t1, t1, m1, m1), b = bent(t1, t2, m1, m2), c = bent(t2, t2, m2, m2);
-    const V d1 = add(sub(g[1], g[0]), bent(t[0], t1, m[0], m1)), d2 = add(sub(g[2], g[0]), bent(t[0], t2, m[0], m2));
+    const V g1 = sub(g[1], g[0]), g2 = sub(g[2], g[0]);
+    const V a = bent(t1, t1, m1, m1, g1, g1), b = bent(t1, t2, m1, m2, g1, g2), c = bent(t2, t2, m2, m2, g2, g2);
+    const V d1 = add(g1, bent(t[0], t1, m[0], m1, g[0], g1)), d2 = add(g2, bent(t[0], t2, m[0], m2, g[0], g2));
     const V det = sub(mul(a, c), mul(b, b));
     const M solvable = hn::Gt(det, mul(set(1e-12), mul(a, c)));
     const V per = hn::Div(set(1), pick(solvable, det, set(1)));
@@ -107,7 +113,7 @@ class Quadratic {
     x = pick(on, place(corners.x), x), y = pick(on, place(corners.y), y), z = pick(on, place(corners.z), z);
   }
 
-  V around_, along_;  // curvatures, 1/mm
+  V around_, along_, across_;  // curvatures, 1/mm
   Direction normal_, meridian_, round_;
 };
 
@@ -163,7 +169,7 @@ void LowestPlaces(const OutlineRuns& runs, std::span<const LaneEdge> outline, co
           }
           kept[j] = values;
         }
-        least.add_run(by_run, holds);
+        least.add_run(by_run, holds, runs_at.beyond(run));
         const M nearest = hn::Lt(plane.distance, steepest.distance);
         steepest.distance = pick(nearest, plane.distance, steepest.distance);
         steepest.out = pick(nearest, plane.out, steepest.out), steepest.up = pick(nearest, plane.up, steepest.up);

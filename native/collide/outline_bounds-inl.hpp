@@ -132,8 +132,9 @@ struct FromBoxes {
       : boxes(b) {
     const LaneEdge& end = outline.front();
     const double lowest = end.arc ? end.centre[1] : end.from[1], highest = std::max(lowest, outline.back().to[1]);
-    double width = 0;
-    for (const LaneEdge& e : outline) width = std::max(width, e.to[0]);
+    double width = kInfinity;  // radius of the tool's thinnest part
+    for (const LaneEdge& e : outline)
+      if (e.to[0] > 0) width = std::min(width, e.to[0]);
     const V cx = sub(hn::Load(kD, b.x + k), set(frame.tip.x)), cy = sub(hn::Load(kD, b.y + k), set(frame.tip.y)),
             cz = sub(hn::Load(kD, b.z + k), set(frame.tip.z));
     x = cx, y = cy, z = cz;
@@ -173,11 +174,9 @@ struct FromBoxes {
   static constexpr double kLong = 0.5;  // times the tool's radius
 };
 
-/// Whether everything within `radius` of a point lies behind the end of a run.
-HWY_INLINE M behind(const OutlineRuns::End& end, const Centres& at, V radius) {
-  const V past =
-      add(mul(sub(at.rho, set(end.point.x)), set(end.way.x)), mul(sub(at.z, set(end.point.y)), set(end.way.y)));
-  return end.open ? hn::Le(add(past, radius), zero()) : hn::Le(radius, set(kInfinity));
+/// How far a point lies beyond the end of a run.
+HWY_INLINE V past(const OutlineRuns::End& end, const Centres& at) {
+  return add(mul(sub(at.rho, set(end.point.x)), set(end.way.x)), mul(sub(at.z, set(end.point.y)), set(end.way.y)));
 }
 
 /// Combines the bounds of a tool's runs. A run's plane bounds how far its convex solid C is. Below the plane it bounds
@@ -187,8 +186,9 @@ class LeastOfRuns {
  public:
   HWY_INLINE LeastOfRuns() : held_(set(kInfinity)), least_(set(kInfinity)), second_(set(kInfinity)) {}
 
-  HWY_INLINE void add_run(V bound, M holds) {
-    held_ = min(held_, pick(either(holds, hn::Ge(bound, zero())), bound, set(-kInfinity)));
+  /// `beyond`: a bound for the points of which the run's does not hold.
+  HWY_INLINE void add_run(V bound, M holds, V beyond) {
+    held_ = min(held_, pick(either(holds, hn::Ge(bound, zero())), bound, min(bound, beyond)));
     second_ = min(second_, max(least_, bound)), least_ = min(least_, bound);
   }
   /// `bound`: of a run whose bound always holds, −∞ if there is none.
@@ -258,7 +258,10 @@ class RunBound {
     Plane plane;
     for (std::size_t i = run.first; i < run.last; ++i)
       outline[i].arc ? plane.add_arc(outline[i], at_) : plane.add_line(outline[i], at_);
-    plane.use_corner(both(behind(run.lower, at_, zero()), behind(run.upper, at_, zero())));
+    const auto before = [&](const OutlineRuns::End& end) {
+      return end.open ? hn::Le(past(end, at_), zero()) : hn::Le(zero(), zero());
+    };
+    plane.use_corner(both(before(run.lower), before(run.upper)));
     return plane;
   }
 
@@ -272,10 +275,36 @@ class RunBound {
 
   /// Where the tangent planes of a run bound the distance wherever they lie.
   HWY_INLINE M holds(const OutlineRuns::Run& run) const {
-    M own = both(behind(run.lower, at_, reach_), behind(run.upper, at_, reach_));
+    const auto behind = [&](const OutlineRuns::End& end) {
+      return end.narrow ? hn::Le(add(past(end, at_), reach_), zero()) : hn::Le(zero(), zero());
+    };
+    M own = both(behind(run.lower), behind(run.upper));
     if constexpr (std::is_same_v<Extent, FromPoints>)
       if (!drifts_) own = either(own, both(corners_behind(run.lower), corners_behind(run.upper)));
     return either(outside_, own);
+  }
+
+  /// Lower bound for the points of a run's solid with feet beyond its ends: as OutlineRuns::beyond_ends.
+  HWY_INLINE V beyond(const OutlineRuns::Run& run) const {
+    if (!run.lower.narrow && !run.upper.narrow) return set(kInfinity);
+    if (drifts_) return set(-kInfinity);
+    const V ax = set(frame_.axis.x), ay = set(frame_.axis.y), az = set(frame_.axis.z);
+    const V low_rho = max(zero(), add(at_.rho, corners_.least(radial_.x, radial_.y, radial_.z)));
+    const V low_z = add(at_.z, corners_.least(ax, ay, az)),
+            high_z = sub(at_.z, corners_.least(hn::Neg(ax), hn::Neg(ay), hn::Neg(az)));
+    V low = set(kInfinity);
+    for (const OutlineRuns::End* end : {&run.lower, &run.upper}) {
+      if (!end->narrow) continue;
+      const V y = set(end->point.y), low_in = sub(low_z, y), high_in = sub(high_z, y);
+      const bool lower = end == &run.lower;
+      const V first = lower ? low_in : hn::Neg(high_in), last = lower ? high_in : hn::Neg(low_in);
+      const V in = sub(set(end->point.x), low_rho), along = set(std::abs(end->way.y));
+      const V out = mul(set(-end->way.x), in);
+      const M some = both(both(hn::Ge(last, zero()), hn::Gt(in, zero())), hn::Ge(out, mul(along, first)));
+      const V deep = end->way.y == 0 ? last : min(last, mul(set(-end->way.x / std::abs(end->way.y)), in));
+      low = min(low, pick(some, hn::Neg(sqrt(squared(in, deep))), set(kInfinity)));
+    }
+    return low;
   }
 
   /// The plane's values at the corners.
@@ -306,7 +335,7 @@ class RunBound {
   /// Whether a triangle lies behind the end of a run, from its corners alone: as TriangleSearch::in_sector.
   HWY_INLINE M corners_behind(const OutlineRuns::End& end) const {
     M out = hn::Le(zero(), zero());
-    if (!end.open) return out;
+    if (!end.narrow) return out;
     const V outward = set(end.way.x), upward = set(end.way.y);
     for (int i = 0; i < 3; ++i) {
       const V x = add(at_.x, corners_.x[i]), y = add(at_.y, corners_.y[i]), z = add(at_.h, corners_.z[i]);

@@ -36,8 +36,9 @@ void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, 
                            drift ? &drifts : nullptr);
     LeastOfRuns least;
     for (const OutlineRuns::Run& run : runs.all())
-      run.reach < kInfinity ? least.add_run(runs_at.by_ball(outline[run.first]))
-                            : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run));
+      run.reach < kInfinity
+          ? least.add_run(runs_at.by_ball(outline[run.first]))
+          : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run), runs_at.beyond(run));
     hn::StoreU(max(least.bound(), runs_at.by_sphere()), kD, low + k);
   }
 }
@@ -54,8 +55,9 @@ void BoxBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const
     const RunBound runs_at(frame, at, extent, extent.reach, distance, drift ? &drifts : nullptr);
     LeastOfRuns least;
     for (const OutlineRuns::Run& run : runs.all())
-      run.reach < kInfinity ? least.add_run(runs_at.by_ball(outline[run.first]))
-                            : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run));
+      run.reach < kInfinity
+          ? least.add_run(runs_at.by_ball(outline[run.first]))
+          : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run), runs_at.beyond(run));
     hn::StoreU(max(least.bound(), runs_at.by_sphere()), kD, low + k);
     hn::StoreU(add(distance, extent.reach), kD, high + k);
   }

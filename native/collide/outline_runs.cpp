@@ -59,11 +59,14 @@ OutlineRuns::OutlineRuns(std::vector<tool::OutlineEdge> edges) : edges_(std::mov
     const tool::OutlineEdge& e = edges_[i];
     outermost_.push_back(all_behind(e));
     const Vec2 start = tangent(e, e.from), end = tangent(e, e.to);
+    const auto end_at = [&](const Vec2& point, const Vec2& way, const Vec2& normal) {
+      const bool open = point.x > 0;
+      return End{point, way, normal, open, open && (hollow(e) || way.x < 0)};
+    };
     if (i == 0 || !goes_on(edges_[i - 1], e))
-      runs_.push_back(
-          {i, i, hollow(e) ? -e.bulge : kInfinity, {e.from, -start, {start.y, -start.x}, e.from.x > 0}, {}});
+      runs_.push_back({i, i, hollow(e) ? -e.bulge : kInfinity, end_at(e.from, -start, {start.y, -start.x}), {}});
     runs_.back().last = i + 1;
-    runs_.back().upper = {e.to, end, {end.y, -end.x}, e.to.x > 0};
+    runs_.back().upper = end_at(e.to, end, {end.y, -end.x});
   }
 }
 
@@ -188,9 +191,25 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest,
     out.closed.reach = reach_at(run, out.closed, p - out.closed.distance * out.closed.normal);
     return;
   }
-  // From outside, K's foot may be a corner of the run: a steeper bound than any plane.
-  if (out.closed.distance > out.behind[0].distance && out.closed.distance == own.distance)
+  // From outside, K's foot may be a corner of the run: a steeper bound than any plane. At an end it is no foot on K.
+  const auto at_end = [&](const End& e) { return e.open && own.point == e.point; };
+  if (out.closed.distance > out.behind[0].distance && out.closed.distance == own.distance && !at_end(run.lower) &&
+      !at_end(run.upper))
     out.behind = {out.closed, out.closed};
+}
+
+double OutlineRuns::beyond_ends(std::size_t run, double low_rho, double low_z, double high_z) const {
+  double low = kInfinity;
+  for (const End* e : {&runs_[run].lower, &runs_[run].upper}) {
+    if (!e->narrow) continue;
+    const bool lower = e == &runs_[run].lower;
+    const double first = lower ? low_z - e->point.y : e->point.y - high_z,
+                 last = lower ? high_z - e->point.y : e->point.y - low_z;  // mm from the end, into the run
+    const double in = e->point.x - std::max(0.0, low_rho), out = -e->way.x, along = std::abs(e->way.y);
+    if (last < 0 || in <= 0 || out * in < along * first) continue;
+    low = std::min(low, -std::hypot(in, along * last > out * in ? out / along * in : last));
+  }
+  return low;
 }
 
 OutlineRuns::At OutlineRuns::at(const Vec2& p, RunAt* runs) const {

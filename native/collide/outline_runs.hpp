@@ -61,6 +61,7 @@ class OutlineRuns {
   struct End {
     Vec2 point, way, normal;  ///< end point, direction of the tangent beyond it, normal out of the solid
     bool open;                ///< the end is not on the axis
+    bool narrow;              ///< open, and points of the run's solid may have feet beyond it, or for a hollow, any
   };
   struct Run {
     std::size_t first, last;  ///< indices of its edges
@@ -77,18 +78,23 @@ class OutlineRuns {
   /// are in its sector.
   bool behind_ends(std::size_t run, const RunAt& at, const Vec2& p, double radius) const {
     const auto passes = [&](const End& e) {
-      return !e.open || glm::dot(p - e.point, e.way) + radius <= 0 ||
+      return !e.narrow || glm::dot(p - e.point, e.way) + radius <= 0 ||
              glm::dot(p - e.point, e.normal) + at.from_run + 2 * radius <= 0;
     };
     return passes(runs_[run].lower) && passes(runs_[run].upper);
   }
+
+  /// Lower bound of −depth for the points of a convex run's solid C whose feet on K lie beyond an end, among points at
+  /// least `low_rho` from the axis and at heights from `low_z` to `high_z`; ∞ if there are none. Such a point is at
+  /// most as deep as the end's edge is far. Its feet lie beyond an end only where the run becomes narrower towards it.
+  double beyond_ends(std::size_t run, double low_rho, double low_z, double high_z) const;
 
   /// Whether a point lies in the sector of a hollow for every distance from the axis between `least_rho` and `rho`, up
   /// to rounding.
   bool in_sector(std::size_t run, double rho, double least_rho, double z) const {
     const auto passes = [&](const End& e) {
       const Vec2 p(e.way.x > 0 ? rho : least_rho, z);
-      return !e.open || glm::dot(p - e.point, e.way) <= 1e-13 * (1 + std::abs(rho) + std::abs(z));
+      return !e.narrow || glm::dot(p - e.point, e.way) <= 1e-13 * (1 + std::abs(rho) + std::abs(z));
     };
     return passes(runs_[run].lower) && passes(runs_[run].upper);
   }

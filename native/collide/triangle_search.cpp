@@ -156,6 +156,25 @@ std::array<double, 3> TriangleSearch::outer(const Corners& t, const Look& from, 
   return {value(t.a), value(t.b), value(t.c)};
 }
 
+/// Bound for a triangle with feet beyond a run's ends: outer(), or planes of edges that have all feet between their
+/// ends.
+double TriangleSearch::by_facing(const OutlineRuns::RunAt& at, const Corners& t, const Look& from, double radius,
+                                 const std::array<double, 3>& outer) const {
+  if (at.margin[0] < radius) return std::min({outer[0], outer[1], outer[2]});
+  const std::array<double, 3> first = plane(at.facing[0], t, from);
+  const double by_first = least_of_greater(outer, first);
+  return at.margin[1] < radius ? by_first : std::max(by_first, least_of_greater(first, plane(at.facing[1], t, from)));
+}
+
+/// Bound for a triangle with feet beyond a run's ends: those points of the run's solid by beyond_ends(), all others by
+/// the planes.
+double TriangleSearch::by_zones(std::size_t run, const Corners& t, const Look& from) const {
+  const auto rho = [&](const Vec3& p) { return glm::dot(p, from.radial); };
+  const double beyond = runs_.beyond_ends(run, std::min({rho(t.a), rho(t.b), rho(t.c)}),
+                                          std::min({t.a.z, t.b.z, t.c.z}), std::max({t.a.z, t.b.z, t.c.z}));
+  return std::min(beyond, least_of_greater(plane(at_[run].behind[0], t, from), plane(at_[run].behind[1], t, from)));
+}
+
 double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
                                  const std::array<double, 3>& outer) const {
   const OutlineRuns::RunAt& at = at_[run];
@@ -171,10 +190,7 @@ double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& 
   if (!runs_.behind_ends(run, at, from.place, radius) && !(at.hollow && in_sector(run, t, from))) {
     if (!at.inside)
       if (const double by_closed = closed(); by_closed >= 0) return by_closed;
-    if (at.margin[0] < radius) return std::min({outer[0], outer[1], outer[2]});
-    const std::array<double, 3> first = plane(at.facing[0], t, from);
-    const double by_first = least_of_greater(outer, first);
-    return at.margin[1] < radius ? by_first : std::max(by_first, least_of_greater(first, plane(at.facing[1], t, from)));
+    return std::max(by_facing(at, t, from, radius, outer), at.hollow || drift_ ? -kInfinity : by_zones(run, t, from));
   }
   if (at.hollow) return least_of_greater(ball(at.behind[0], t, from), outer);
   const std::array<double, 3> first = plane(at.behind[0], t, from);
@@ -234,8 +250,11 @@ TriangleSearch::Look TriangleSearch::downhill(const Corners& t, Look from) {
   const auto model = [&](const OutlineRuns::Slope& s) {
     const Vec3 meridian = Vec3(0, 0, s.normal.x) - s.normal.y * from.radial, round(-from.radial.y, from.radial.x, 0);
     const double around = std::max(0.0, s.normal.x) / std::max(from.place.x, 1e-9);
-    return Quadratic{s.distance, s.normal.x * from.radial + Vec3(0, 0, s.normal.y),
-                     s.curvature * glm::outerProduct(meridian, meridian) + around * glm::outerProduct(round, round)};
+    const Vec3 normal = s.normal.x * from.radial + Vec3(0, 0, s.normal.y);
+    // Along the normal, too, so that steps do not end beyond the minimum: as in lowest_places.cpp.
+    return Quadratic{s.distance, normal,
+                     s.curvature * glm::outerProduct(meridian, meridian) + around * glm::outerProduct(round, round) +
+                         std::max(s.curvature, around) * glm::outerProduct(normal, normal)};
   };
   for (int step = 0; step < 10; ++step) {
     const OutlineRuns::Slope& second = from.at.second;

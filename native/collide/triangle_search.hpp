@@ -124,6 +124,9 @@ class TriangleSearch {
   std::array<double, 3> ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const;
   std::array<double, 3> outer(const Corners& t, const Look& from, double radius) const;
   double solid_bound(std::size_t run, const Corners& t, const Look& from, double radius) const;
+  double by_facing(const OutlineRuns::RunAt& at, const Corners& t, const Look& from, double radius,
+                   const std::array<double, 3>& outer) const;
+  double by_zones(std::size_t run, const Corners& t, const Look& from) const;
   double run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
                    const std::array<double, 3>& outer) const;
   Look downhill(const Corners& t, Look from);

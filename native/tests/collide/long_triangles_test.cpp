@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/contact_parts.hpp"
+#include "bench/contact_scene.hpp"
 #include "collide/lowest_places.hpp"
 #include "collide/oriented_boxes.hpp"
 #include "collide/outline_lanes.hpp"
 #include "collide/pieces.hpp"
 #include "collide/surface.hpp"
 #include "collide/tools.hpp"
+#include "geom/math.hpp"
 #include "reference/surface_distance.hpp"
 #include "riffler/collide/collider.hpp"
 #include "stress/contact_scenes.hpp"
@@ -63,6 +66,57 @@ TEST(LongTriangles, ABallAlongABoreTakesFewSteps) {
     EXPECT_LT(counts.triangles, 20U) << depth;  // examined one by one
     EXPECT_LT(counts.nodes, 2000U) << depth;
   }
+}
+
+TEST(LongTriangles, ALeaningBallInABoreNeedsNoSearchOfSingleTriangles) {
+  // The lowest place is on the ball, 0.1 rad below its equator. Newton's method began on the cylinder above, whose
+  // straight side it followed to the triangle's other end, and back.
+  const Collider collider(bench::contact_mesh("bore"));
+  const Assembly assembly(bench::contact_tools()[0].tool);
+  for (const double z : {20.0, 30.0, 34.2, 37.0, 45.0})
+    for (const double turn : {0.0, 0.3, 1.7}) {
+      const Vec3 inward(-std::cos(turn), -std::sin(turn), 0), axis = glm::normalize(0.1 * inward + Vec3(0, 0, 1));
+      Counts counts;
+      const Contact contact = collider.query(assembly, {-17.2 * inward + Vec3(0, 0, z) - 3.0 * axis, axis}, {}, counts);
+      EXPECT_NEAR(contact.depth, 0.2, 0.01);
+      EXPECT_LE(counts.triangles, 2U) << z << ' ' << turn;
+      EXPECT_LE(counts.cells, 40U) << z << ' ' << turn;
+    }
+}
+
+TEST(LongTriangles, NeedlesUnderAShankAndAHolderOpenFewBoxes) {
+  // Half a box's length is more than the cutter's radius and less than the holder's: bounds from its middle say
+  // nothing.
+  const bench::ContactPart part = bench::contact_part("needles", bench::contact_tools()[0].tool, 10, 1);
+  const Collider collider(part.mesh);
+  const Assembly assembly(bench::contact_tools()[0].tool);
+  for (const Pose& pose : part.poses) {
+    Counts counts;
+    collider.query(assembly, pose, {}, counts);
+    EXPECT_LE(counts.triangles, 2U);
+    EXPECT_LE(counts.nodes, 1000U);
+  }
+}
+
+TEST(LongTriangles, AVertexInTheCornerOfAShankNeedsNoSearchOfSingleTriangles) {
+  // A fan of long triangles around a point that pokes into the corner where the shank becomes a cone: each reaches
+  // heights below the cone, where no point is in it.
+  const Tool tool = bench::contact_tools()[0].tool;
+  const Assembly assembly(tool);
+  Mesh fan;
+  const Vec3 tip(2.5, 0, 40.3);
+  fan.vertices.push_back(tip);
+  constexpr int kBlades = 16;
+  for (int k = 0; k < kBlades; ++k) {
+    const double a = 2 * kPi * k / kBlades;
+    fan.vertices.push_back(tip + Vec3(12, 6 * std::cos(a), 6 * std::sin(a)));
+  }
+  for (int k = 0; k < kBlades; ++k) fan.triangles.push_back({0, 1 + k, 1 + (k + 1) % kBlades});
+  const Collider collider(fan);
+  Counts counts;
+  const Contact contact = collider.query(assembly, {{0, 0, 0}, {0, 0, 1}}, {}, counts);
+  EXPECT_NEAR(contact.depth, -tool::Outline(tool).nearest(tip.x, tip.z).distance, 1e-9);
+  EXPECT_LE(counts.cells, 100U);
 }
 
 TEST(LongTriangles, AToolOutOfReachVisitsOneGroup) {

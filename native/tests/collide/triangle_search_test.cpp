@@ -295,6 +295,83 @@ TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheMinimum) {
   }
 }
 
+/// Boxes in the part's frame, around points near a tool.
+OrientedBoxes boxes_near(const tool::Outline& outline, const ToolFrame& frame, Random& random) {
+  OrientedBoxes out;
+  out.axis[0] = random.direction(), out.axis[1] = random.square_to(out.axis[0]);
+  out.axis[2] = glm::cross(out.axis[0], out.axis[1]);
+  for (int k = 0; k < base::kLanes; ++k) {
+    const Vec3 p = frame.to_part(place_near(outline, random));
+    out.x[k] = p.x, out.y[k] = p.y, out.z[k] = p.z;
+    for (int i = 0; i < 3; ++i) out.half[i][k] = random.one_in(4) ? 0 : random.power_of_ten(-3, 1.5);
+  }
+  return out;
+}
+
+/// The smallest distance that many points of a box find, the last of them near the best.
+double sampled(const tool::Outline& outline, const ToolFrame& frame, const OrientedBoxes& boxes, int k,
+               Random& random) {
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 best(0);
+  const auto look = [&](const Vec3& s) {
+    Vec3 p(boxes.x[k], boxes.y[k], boxes.z[k]);
+    for (int i = 0; i < 3; ++i) p += s[i] * boxes.half[i][k] * boxes.axis[i];
+    if (const double d = distance_at(outline, frame.to_tool(p)); d < least) least = d, best = s;
+  };
+  for (int n = 0; n < 27; ++n) look(Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+  for (int n = 0; n < 100; ++n) look(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+  for (double step = 0.3; step > 1e-9; step *= 0.9) look(glm::clamp(best + step * random.direction(), -1.0, 1.0));
+  return least;
+}
+
+TEST(OutlineLanes, BoundsOfBoxesAreNeverAboveTheMinimumNorBelowTheSpheres) {
+  std::uint64_t seed = 550;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const tool::Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    const std::vector<LaneEdge> edges(outline.edges().begin(), outline.edges().end());
+    Random random(++seed);
+    for (int n = 0; n < test::cases(100); ++n) {
+      const ToolFrame frame({10.0 * random.direction(), random.direction()});
+      const OrientedBoxes boxes = boxes_near(outline, frame, random);
+      double low[base::kLanes], high[base::kLanes];
+      box_bounds(runs, edges, frame, boxes, nullptr, low, high);
+      for (int k = 0; k < base::kLanes; ++k) {
+        const double least = sampled(outline, frame, boxes, k, random);
+        ASSERT_LE(low[k], least + 1e-9) << n;
+        const Vec3 half(boxes.half[0][k], boxes.half[1][k], boxes.half[2][k]),
+            centre(boxes.x[k], boxes.y[k], boxes.z[k]);
+        ASSERT_GE(low[k], distance_at(outline, frame.to_tool(centre)) - 4 * glm::length(half) - 1e-9) << n;
+        ASSERT_GE(high[k], least - 1e-9) << n;
+      }
+    }
+  }
+}
+
+TEST(OutlineRuns, PointsWithFeetBeyondAnEndAreNoDeeperThanSaid) {
+  // Each point lies in one run's solid: its depth is at most that of the run's planes, or that beyond its ends.
+  std::uint64_t seed = 560;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const tool::Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    std::vector<OutlineRuns::RunAt> of(runs.size());
+    Random random(++seed);
+    for (int n = 0; n < test::cases(5000); ++n) {
+      const Vec3 p = place_near(outline, random);
+      const double rho = std::hypot(p.x, p.y), distance = distance_at(outline, p);
+      runs.at({rho, p.z}, of.data());
+      for (std::size_t run = 0; run < runs.size(); ++run) {
+        if (!of[run].inside || of[run].hollow) continue;
+        const double slack = random.power_of_ten(-6, 0);  // of the region that the point is known to lie in
+        const double beyond = runs.beyond_ends(run, rho - slack, p.z - slack, p.z + slack);
+        ASSERT_LE(std::min(of[run].behind[0].distance, beyond), distance + 1e-9) << n;
+      }
+    }
+  }
+}
+
 TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
   // Lines of equal distance bend by at most one in the distance. Beside the ends of a run its planes are flatter.
   std::uint64_t seed = 600;
