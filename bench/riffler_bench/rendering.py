@@ -15,6 +15,7 @@ from .report import Column, Report
 TARGETS = {"cut": 0.5e-3, "wave": 0.5e-3, "trace": 0.35e-3, "fixture": 0.35e-3, "bore": 0.35e-3, "box": 0.35e-3}
 STOCKS = ("cut", "wave", "fixture")  # scenes with dexels
 MODEL, MODEL_TARGET = "ktoolcav", 0.35e-3
+LONG = ("bore", "box", MODEL)  # scenes whose slow places come late: four times as many steps
 # With a wall rows of rays must be finer than what small steps remember.
 EXACT = {"wave": {"pitch": 0.1, "parts": 64, "memory": 0.01}, "groove": {"pitch": 0.025, "parts": 16, "memory": 0.02}}
 MS = 1e-3
@@ -43,7 +44,7 @@ def times(out: Report, settings: Settings) -> None:
         pitches = (0.4, 0.2, 0.1) if scene in STOCKS else (0.1,)
         for pitch in pitches[:1] if settings.quick else pitches:
             with steady():
-                run = core.haptic_run(source, pitch, steps)
+                run = core.haptic_run(source, pitch, 4 * steps if scene in LONG else steps)
             seconds = list(run["seconds"])
             table.row(
                 scene=scene, pitch=pitch if scene in STOCKS else None, count=len(seconds),

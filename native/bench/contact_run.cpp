@@ -131,7 +131,13 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
   for (const Pose& pose : scene.poses)
     if (const collide::Collider::Nearest at = collider.nearest(assembly, pose); at.distance < 0)
       colliding += 1, holder += at.touch == collide::Touch::Holder;
-  for (const Pose& pose : scene.poses) doubtful += collider.query(assembly, pose, kBudget).missed_depth_bound > kDoubt;
+  for (const Pose& pose : scene.poses) {
+    // A budget is real time: where another process interrupts a query, its answer says nothing of the query.
+    std::vector<double> bounds;
+    for (int r = 0; r < options.repeats; ++r)
+      bounds.push_back(collider.query(assembly, pose, kBudget).missed_depth_bound);
+    doubtful += median(bounds) > kDoubt;
+  }
   std::vector<std::string> rows;
   for (std::size_t a = 0; a < asks.size(); ++a)
     rows.push_back(Json()
