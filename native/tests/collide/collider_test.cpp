@@ -179,9 +179,13 @@ TEST(Collider, StiffnessIsTheDerivativeOfForceAndTorque) {
     for (std::size_t j = 0; j < 6; ++j) EXPECT_DOUBLE_EQ(at.stiffness[i][j], at.stiffness[j][i]);
 }
 
+struct Dense {
+  Vec3 force{0}, torque{0};  // the torque about the tip
+};
+
 /// ∫ depth n dA by very many points of a fine grid over each triangle.
-Vec3 dense_force(const Mesh& mesh, const tool::Outline& outline, const Pose& pose, int n) {
-  Vec3 sum(0);
+Dense dense_wrench(const Mesh& mesh, const tool::Outline& outline, const Pose& pose, int n) {
+  Dense sum;
   for (const Vec3i& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
     const Vec3 area = 0.5 * glm::cross(b - a, c - a) / static_cast<double>(n * n);
@@ -189,33 +193,40 @@ Vec3 dense_force(const Mesh& mesh, const tool::Outline& outline, const Pose& pos
       for (int j = 0; j < 2 * (n - i) - 1; ++j) {
         const double shift = j % 2 ? 2.0 / 3 : 1.0 / 3;
         const Vec3 p = a + (i + shift) / n * (b - a) + (j / 2 + shift) / n * (c - a);
-        sum += std::max(0.0, -distance_at(outline, pose, p)) * area;
+        const Vec3 force = std::max(0.0, -distance_at(outline, pose, p)) * area;
+        sum.force += force, sum.torque += glm::cross(p - pose.tip, force);
       }
   }
   return sum;
 }
 
-TEST(Collider, ForceConvergesToTheIntegralOfDepthOverTheSurface) {
+TEST(Collider, ForceAndTorqueConvergeToTheIntegralOfDepthOverTheSurface) {
   const Mesh mesh = wavy(20, 10);
   const Assembly assembly(cutters::ball(6, 30));
   Random random(7);
-  std::vector<double> errors;
+  std::vector<double> errors, turning;
   for (const double spacing : {0.4, 0.2, 0.1, 0.05}) {
     const Collider collider(mesh, {}, {.spacing = spacing});
-    double worst = 0;
+    double worst = 0, worst_turning = 0;
     random = Random(7);
     for (int n = 0; n < test::cases(6); ++n) {
       const Pose pose = tilted({random.uniform(4, 6), random.uniform(4, 6), random.uniform(2, 4)}, random, 0.4);
       const Contact c = collider.query(assembly, pose);
-      const Vec3 expected = dense_force(mesh, assembly.outline(), pose, 60);
-      if (glm::length(expected) > 0.1) worst = std::max(worst, glm::length(c.force - expected) / glm::length(expected));
+      const Dense expected = dense_wrench(mesh, assembly.outline(), pose, 60);
+      const double size = glm::length(expected.force);
+      if (!(size > 0.1)) continue;
+      worst = std::max(worst, glm::length(c.force - expected.force) / size);
+      // A torque may vanish where its parts do not: relative to the force at the ball's radius.
+      worst_turning = std::max(worst_turning, glm::length(c.torque - expected.torque) / (3 * size));
     }
-    errors.push_back(worst);
+    errors.push_back(worst), turning.push_back(worst_turning);
   }
   // The worst of a few poses does not fall steadily; over three halvings it does.
-  EXPECT_LT(errors.front(), 1e-2);
-  EXPECT_LT(errors.back(), 0.25 * errors.front());
-  EXPECT_LT(errors.back(), 1e-3);
+  for (const std::vector<double>& of : {errors, turning}) {
+    EXPECT_LT(of.front(), 1e-2);
+    EXPECT_LT(of.back(), 0.25 * of.front());
+    EXPECT_LT(of.back(), 1e-3);
+  }
 }
 
 TEST(Collider, DenseTrianglesAreGatheredAndLargeOnesSplit) {

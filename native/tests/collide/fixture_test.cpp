@@ -32,10 +32,10 @@ Pose leaning(Random& random, const Vec3& tip, double most) {
   return {tip, {std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)}};
 }
 
-/// A force, and what its parts add up to where they do not cancel each other.
+/// Force and torque about the tip, and what the parts of each add up to where they do not cancel each other.
 struct Dense {
-  Vec3 force{0};
-  double size = 0;
+  Vec3 force{0}, torque{0};
+  double size = 0, turning = 0;
 };
 
 /// k times the volume in the tool, each point h apart towards the middle of the cutter or the holder.
@@ -52,18 +52,20 @@ Dense dense_force(const Assembly& assembly, const Pose& pose, const Box3& box, d
         for (const Assembly::HeightBand& s : assembly.stretches())
           if (!in || z > s.low) in = &s;
         const Vec3 way = pose.tip + 0.5 * (in->low + in->high) * pose.axis - p;
-        sum.force += kStiffness * h * h * h / glm::length(way) * way, sum.size += kStiffness * h * h * h;
+        const Vec3 force = kStiffness * h * h * h / glm::length(way) * way, torque = glm::cross(d, force);
+        sum.force += force, sum.size += glm::length(force);
+        sum.torque += torque, sum.turning += glm::length(torque);
       }
   return sum;
 }
 
-TEST(Fixture, ForceIsThatOfTheVolumeInTheToolForAnyPitch) {
+TEST(Fixture, ForceAndTorqueAreThoseOfTheVolumeInTheToolForAnyPitch) {
   const std::vector<Assembly> tools{Assembly(cutters::ball(6, 20)), Assembly(held(cutters::fillet(8, 1, 12))),
                                     Assembly(cutters::flat(5, 20).with_holder({{20, 15, 40, 15}}))};
   for (const double pitch : {0.5, 0.2, 0.1}) {
     const Collider collider = beside(kBlock, pitch, 0.3);
     Random random(3);
-    double worst = 0, sum = 0;
+    double worst = 0, sum = 0, worst_torque = 0;
     int count = 0;
     for (int n = 0; n < 60; ++n) {
       const Assembly& assembly = tools[n % 3];
@@ -74,10 +76,12 @@ TEST(Fixture, ForceIsThatOfTheVolumeInTheToolForAnyPitch) {
       const Dense exact = dense_force(assembly, pose, kBlock, 0.1);
       const double error = glm::length(c.force - exact.force) / exact.size;
       worst = std::max(worst, error), sum += error, ++count;
+      worst_torque = std::max(worst_torque, glm::length(c.torque - exact.torque) / exact.turning);
     }
     EXPECT_GT(count, 20);
     EXPECT_LT(worst, 0.06) << pitch;
     EXPECT_LT(sum / count, 0.015) << pitch;
+    EXPECT_LT(worst_torque, 0.06) << pitch;
     RecordProperty("worst_at_" + std::to_string(pitch), std::to_string(worst));
   }
 }
