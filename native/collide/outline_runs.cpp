@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::collide {
@@ -207,7 +208,7 @@ double OutlineRuns::beyond_ends(std::size_t run, double low_rho, double low_z, d
                  last = lower ? high_z - e->point.y : e->point.y - low_z;  // mm from the end, into the run
     const double in = e->point.x - std::max(0.0, low_rho), out = -e->way.x, along = std::abs(e->way.y);
     if (last < 0 || in <= 0 || out * in < along * first) continue;
-    low = std::min(low, -std::hypot(in, along * last > out * in ? out / along * in : last));
+    low = std::min(low, -geom::hypot(in, along * last > out * in ? out / along * in : last));
   }
   return low;
 }

@@ -150,8 +150,8 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
     table.notes.append(
         "Half of the poses on parts from files are on the pencil paths of the ball, the others anywhere on the part: "
         "from 2 mm above to 0.3 mm deep. Bore and wall are one cylinder, R20 × 60 of 360 facets, with the tool along "
-        "it. In doubt: a depth that may be more than 0.05 mm larger than most of three answers. FCL: oriented boxes, tool as a "
-        "mesh."
+        "it. In doubt: a depth that may be more than 0.05 mm larger than most of three answers. FCL: oriented boxes, "
+        "tool as a mesh."
     )
 
 

@@ -56,7 +56,7 @@ Mesh model(const std::string& name) {
   return mesh;
 }
 
-/// A stretch of the part along which an upright tool beside it keeps its distance to 0.05 mm.
+/// A stretch of the part along which an upright tool next to it keeps its distance to 0.05 mm.
 std::optional<Wall> wall_of(const std::string& name, const Mesh& mesh, const collide::Collider& part) {
   const collide::Assembly tool(cutters::ball(2 * kRadius, kLength));
   stress::Random random(7);
