@@ -71,7 +71,8 @@ class Tally:
         else:
             self.failed.append((name, result["message"]))
             note = indented(result["message"])
-        print(f"  {outcome:8}{result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
+        processor = result.get("processor", result["seconds"])
+        print(f"  {outcome:8}{processor:7.2f} s in {result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
 
     def leave(self, where: str, count: int, others: str) -> None:
         why = "because their time goes into the core"
