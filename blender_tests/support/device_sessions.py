@@ -95,7 +95,7 @@ class Hand:
         common.push("Sculpt with Pen")
 
     def _give(self, x, y, pressed):
-        self._time += 0.004
+        self._time += 0.008
         self.pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=self._time)
 
     def _go(self, x, y, pressed):
@@ -112,7 +112,7 @@ class Hand:
     def down(self, y, first=5, last=45):
         """The hand comes and cuts; it does not release."""
         self._go(first, y, 0)
-        for x in np.arange(first, last, 1.0):
+        for x in np.arange(first, last, 2.0):
             self._go(x, y, 1)
 
     def up(self, x=60, y=0):
