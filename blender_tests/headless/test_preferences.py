@@ -61,6 +61,7 @@ def test_limits_have_the_defaults_of_the_core():
     assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (5, 300, 2000))
 
 
+@common.core_bound
 def test_no_session_passes_more_force_than_allowed():
     """From its journal, which has every step: 0.2 N instead of the default 5."""
     common.scale(1)

@@ -295,6 +295,7 @@ def test_what_is_refused_changes_nothing():
     assert np.array_equal(common.coordinates(ob.data), co)
 
 
+@common.core_bound
 def test_fixtures_keep_the_tool_of_a_device_out():
     """A clamp lies on the stock in the path of a groove: the hand goes through it, the tool does not."""
     ob = sculpt()

@@ -126,6 +126,7 @@ def come(hand, y):
     hand.look(there)
 
 
+@common.core_bound
 def test_strokes_of_a_device_are_planned_and_motion_in_air_is_not():
     ob = sculpt("xyz")
     hand = Hand(ob)

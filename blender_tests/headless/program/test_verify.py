@@ -254,6 +254,7 @@ def reports(**how):
     return " ".join(said.split())
 
 
+@common.core_bound
 def test_the_chosen_machine_is_verified_wherever_the_stock_stands():
     """Earlier a turned stock, and a .rprog file, gave “No machine was given”, and no limits were checked."""
     ob = programs.resolved()

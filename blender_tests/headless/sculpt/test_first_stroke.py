@@ -51,6 +51,7 @@ def test_the_default_cube_becomes_a_sculpt_with_its_stroke_and_stays_where_it_is
     assert abs((1e6 - volume(made).volume) / groove - 1) < 0.03
 
 
+@common.core_bound
 def test_a_tiny_and_a_huge_object_are_as_easy_to_sculpt_as_any():
     for size in (0.002, 0.7, 400.0):
         bpy.ops.wm.read_homefile()

@@ -53,6 +53,7 @@ def grows(out):
     return np.median(late) >= 1.5 * np.median(early) + 0.02
 
 
+@common.core_bound
 def test_a_million_triangles_keep_up_with_the_hand():
     bpy.ops.riffler.new_stock(source="BLOCK", origin="CENTRE", size=(SIDE, SIDE, 10), pitch=0.25, directions="xyz")
     live = common.part("sculpt.live_registry").begin(bpy.context, bpy.context.object)

@@ -77,6 +77,7 @@ def test_the_tolerance_is_changed_afterwards():
     assert not bpy.ops.riffler.retessellate.poll()
 
 
+@common.core_bound
 def test_errors_change_nothing():
     with_reader()
     wire, before = part("wire.step"), len(bpy.data.objects)

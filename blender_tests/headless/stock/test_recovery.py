@@ -471,6 +471,7 @@ def test_the_next_work_at_the_same_sculpt_needs_no_older_journal():
         assert not list(root.iterdir())
 
 
+@common.core_bound
 def test_copies_by_symmetry_and_standing_rows_are_replayed_to_the_byte():
     name = sculpt()
     run = work(name)

@@ -246,6 +246,7 @@ def test_every_preset_makes_a_tool():
     assert riffler.Tool.from_dict(tool.dictionary()).diameter == 5.5
 
 
+@common.core_bound
 def test_a_warning_names_a_lump_of_few_rays():
     """Suzanne in a scene in millimetres, at the panel's default pitch."""
     common.scale(1)
