@@ -29,7 +29,8 @@ sys.exit(failed or "Leaks" in str(options))
 
 
 def program(tmp_path, *kinds):
-    file = tmp_path / "tests"
+    file = tmp_path / "my checkout" / "tests"
+    file.parent.mkdir()
     file.write_text(PROGRAM.format(kinds=kinds))
     file.chmod(file.stat().st_mode | stat.S_IXUSR)
     return file

@@ -33,7 +33,9 @@ main(test.entry)
 
 
 def suites(folder, *names):
-    script = folder / "suites.py"
+    """Runs them in a checkout whose path has a space."""
+    script = folder / "my checkout" / "suites.py"
+    script.parent.mkdir()
     script.write_text(SCRIPT.format(tools=str(TOOLS), logs=str(folder / "logs"), script=str(script)))
     return subprocess.run([sys.executable, script, *names], capture_output=True, text=True, timeout=120, check=False)
 
@@ -77,6 +79,16 @@ def test_a_single_suite_prints_while_it_runs(tmp_path, name, code):
 def test_an_unknown_suite_is_named(tmp_path):
     done = suites(tmp_path, "fine", "fin")
     assert done.returncode == 1 and "unknown suite 'fin'" in done.stderr and "fine, it printed" not in done.stdout
+
+
+@pytest.mark.parametrize("cores, processes", [(1, "2"), (2, "4"), (16, "4")])
+def test_few_and_many_cores_run_the_python_tests(monkeypatch, cores, processes):
+    commands = []
+    monkeypatch.setattr(test, "cores", lambda: cores)
+    monkeypatch.setattr(test, "run", lambda *words: commands.append(words))
+    test.python()
+    (words,) = commands
+    assert words[words.index("-n") + 1] == processes
 
 
 def test_a_stamp_is_of_its_key_and_a_digest_of_names_and_contents(tmp_path, monkeypatch):
