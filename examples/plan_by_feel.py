@@ -43,7 +43,7 @@ print(f"{len(session.keys)} keys; the hand leans 34.4 degrees, at the clamp the 
 deep = np.quantile(depth, 0.99)  # a step that a busy machine delays has a loose bound
 print(f"torque up to {abs(torque).max():.0f} N·mm, the tool at most {deep:.2f} mm deep in 99 % of the steps")
 
-cl, report = plan.cutter_locations(path, tool, collider)
+cl, report = plan.cutter_locations(path, tool, collider, tolerance=0.03)
 program = riffler.Program.from_cl([cl], tools=[tool], feed=600, spindle=12000, collider=collider)
 program.write("by_feel.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, -40)}, collider=collider)
 found = riffler.verify(program, riffler.Volume.from_mesh(part, 0.5, "xyz"), part_mesh=part, fixtures=[clamp])

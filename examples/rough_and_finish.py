@@ -12,13 +12,13 @@ LOWER, UPPER = (0, 0, 0), (60, 44, 15)
 plate = riffler.Volume.block(LOWER, (60, 44, 6), 0.25, "xyz")
 part = riffler.Volume.sphere((30, 22, -4), 18, 0.25, "xyz", lower=LOWER, upper=UPPER)
 part |= riffler.Volume.from_mesh(plate.to_mesh(), 0.25, "xyz", lower=LOWER, upper=UPPER)
-setup = plan.Setup(part.to_mesh(tolerance=0.005), riffler.Volume.block(LOWER, UPPER, 0.25))
+setup = plan.Setup(part.to_mesh(tolerance=0.01), riffler.Volume.block(LOWER, UPPER, 0.25))
 
 flat, ball = riffler.Tool.flat(diameter=8, length=25), riffler.Tool.ball(diameter=6, length=25)
 roughing = plan.rough(setup, flat, stepdown=3, engagement=0.4, allowance=0.3, feed=1500)
 setup.apply(roughing)
 rough = setup.stock
-finishing = plan.finish(setup, ball, cusp=0.02, tolerance=0.01, angle=0.5, slopes=(0, 1.2), feed=1500)
+finishing = plan.finish(setup, ball, cusp=0.02, tolerance=0.02, angle=0.5, slopes=(0, 1.2), feed=1500)
 setup.apply(finishing)
 program = plan.program(setup, [roughing, finishing])  # simulated: no rapid in material, no gouge, no collision
 program.write("dome.ngc", post="3-axis")
