@@ -66,9 +66,9 @@ def geometry():
 
 @pytest.fixture(scope="module")
 def found(geometry):
-    """Three random pens: what was identified, and the truth."""
+    """Two random pens: what was identified, and the truth. A third one is the command's."""
     out = []
-    for seed in (1, 2, 3):
+    for seed in (1, 2):
         with riffler.pen.open("simulated", seed=seed, real_time=False) as device:
             out.append((identified(device, WEIGHT, Keyboard(False), seed, None), device.truth))
     return out
@@ -176,8 +176,8 @@ def test_values_of_random_pens_are_within_the_bars(found):
 
 def test_intervals_hold_the_truth(found):
     inside = np.concatenate([ok for values, truth in found for ok in covered(values, truth).values()])
-    assert len(inside) == 3 * 22
-    assert inside.mean() > 0.88  # 95 %, and what chance allows for in 66 values
+    assert len(inside) == 2 * 22
+    assert inside.mean() > 0.88  # 95 %, and what chance allows for in 44 values
 
 
 def test_intervals_are_no_wider_than_necessary(found):

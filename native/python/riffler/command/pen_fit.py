@@ -66,6 +66,16 @@ class Sweep:
 
 
 @dataclass(frozen=True)
+class Rows:
+    """The equations of a sweep; a sweep that ``rows_of`` cannot use has none."""
+
+    kind: str
+    matrix: np.ndarray  # (n, 30)
+    side: np.ndarray  # (n,)
+    loaded: bool  # with the hung weight
+
+
+@dataclass(frozen=True)
 class HungWeight:
     """The weight that hangs on the grip, with standard uncertainties."""
 
@@ -103,9 +113,15 @@ def identify(
     geometry: pen.PenGeometry, free: Sequence[Sweep], loaded: Sequence[Sweep], weight: HungWeight
 ) -> Identified:
     """The fit to sweeps without and with the hung weight. IdentifyError if they do not determine all values."""
-    values, scatter, rows, residual = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD)
-    hooked, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook + weight.hook_error, LEAD, scatter=False)
-    led, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD + LEAD_ERROR, scatter=False)
+
+    def rows_at(sweeps: Sequence[Sweep], force: float, hook: float, lead: float) -> list[Rows]:
+        return [Rows(s.kind, *rows_of(geometry, s, force, hook, lead), loaded=force > 0) for s in sweeps]
+
+    force, hook, off, late = weight.force, weight.hook, weight.hook + weight.hook_error, LEAD + LEAD_ERROR
+    unloaded = rows_at(free, 0.0, hook, LEAD)  # without a weight, its hook is in no equation
+    values, scatter, rows, residual = _fitted([*unloaded, *rows_at(loaded, force, hook, LEAD)])
+    hooked, *_ = _fitted([*unloaded, *rows_at(loaded, force, off, LEAD)], scatter=False)
+    led, *_ = _fitted([*rows_at(free, 0.0, hook, late), *rows_at(loaded, force, hook, late)], scatter=False)
     errors = np.sqrt(
         scatter**2
         + (hooked - values) ** 2
@@ -127,27 +143,22 @@ def _weighted(geometry: pen.PenGeometry) -> list[int]:
     return [k for k, c in enumerate(geometry.channels) if c.name[1] != "1"]
 
 
-def _fitted(
-    geometry: pen.PenGeometry, free: Sequence[Sweep], loaded: Sequence[Sweep], force: float, hook: float,
-    lead: float, scatter: bool = True,
-) -> tuple[np.ndarray, np.ndarray, int, float]:  # fmt: skip
+def _fitted(parts: Sequence[Rows], scatter: bool = True) -> tuple[np.ndarray, np.ndarray, int, float]:
     """Unknowns, their standard uncertainties by the jackknife over sweeps, rows, and the residual."""
-    parts = [(s.kind, *rows_of(geometry, s, 0.0, hook, lead)) for s in free]
-    parts += [(s.kind, *rows_of(geometry, s, force, hook, lead)) for s in loaded]
-    parts = [part for part in parts if len(part[2])]
-    if len(parts) < FEWEST or not any(part[2].any() for part in parts):
+    parts = [part for part in parts if len(part.side)]
+    if len(parts) < FEWEST or not any(part.side.any() for part in parts):
         raise IdentifyError(
             f"only {len(parts)} sweeps have all joints in motion, {FEWEST} are needed, some of them with the weight: "
             "the grip was held, or the motors did not move it"
         )
-    scale = 1 / np.sqrt(sum((a**2).sum(axis=0) for _, a, _ in parts) + 1e-300)
-    squares = np.array([(a * scale).T @ (a * scale) for _, a, _ in parts])
-    sides = np.array([(a * scale).T @ b for _, a, b in parts])
-    kinds, loaded_kinds = np.array([kind for kind, *_ in parts]), {s.kind for s in loaded}
-    shares, left = np.ones(len(parts)), [b for *_, b in parts]
+    scale = 1 / np.sqrt(sum((part.matrix**2).sum(axis=0) for part in parts) + 1e-300)
+    squares = np.array([(part.matrix * scale).T @ (part.matrix * scale) for part in parts])
+    sides = np.array([(part.matrix * scale).T @ part.side for part in parts])
+    kinds, loaded_kinds = np.array([part.kind for part in parts]), {part.kind for part in parts if part.loaded}
+    shares, left = np.ones(len(parts)), [part.side for part in parts]
     normal, side, unknowns = solved(shares, squares, sides)
     for _ in range(6):  # each sweep's noise sets its weight in the sum; loaded sweeps share one noise
-        left = [b - a @ (scale * unknowns) for _, a, b in parts]
+        left = [part.side - part.matrix @ (scale * unknowns) for part in parts]
         noise = np.array([np.sqrt(np.mean(part**2)) for part in left])
         for kind in set(kinds):
             mine = kinds == kind
@@ -158,7 +169,7 @@ def _fitted(
             shares[mine] = np.where(noise[mine] > STUCK * usual, 0.0, counts_as**-2.0)
         normal, side, unknowns = solved(shares, squares, sides)
     residual = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
-    rows = sum(len(b) for *_, b in parts)
+    rows = sum(len(part.side) for part in parts)
     if not scatter:
         return unknowns * scale, np.zeros(UNKNOWNS), rows, residual
     # Residuals within a sweep are correlated, so the scatter is judged between sweeps.
