@@ -6,11 +6,12 @@ import os
 import re
 import shutil
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 WHEELS = ("4.2", "4.5", "5.0")
+compiled = ""  # folder of the compiled modules that all processes of `blender` read
 
 
 @dataclass
@@ -19,6 +20,7 @@ class Environment:
     version: tuple[int, ...]
     command: list[str]  # what runs a script; the script's path follows
     missing: str = ""  # why it cannot be used
+    variables: dict[str, str] = field(default_factory=dict)  # of every process
 
     @property
     def extensions(self) -> bool:
@@ -27,7 +29,7 @@ class Environment:
 
     def run(self, script: Path, variables: dict[str, str], timeout: float) -> subprocess.CompletedProcess:
         """Runs a script; a timeout ends the whole process group and is return code 124."""
-        return execute([*self.command, str(script)], variables, timeout)
+        return execute([*self.command, str(script)], {**self.variables, **variables}, timeout)
 
 
 def execute(command: list[str], variables: dict[str, str], timeout: float) -> subprocess.CompletedProcess:
@@ -57,6 +59,14 @@ def wheel(version: str) -> Environment:
     return Environment(f"bpy {version}", key, [str(python)], missing)
 
 
+def bytecode(write: bool) -> dict[str, str]:
+    """Variables for a process that reads compiled modules from the common folder, if there is one. Written once only:
+    tests replace modules, perhaps twice within the second that tells a source from a newer one."""
+    if not compiled:
+        return {}
+    return {"PYTHONPYCACHEPREFIX": compiled, "PYTHONDONTWRITEBYTECODE": "" if write else "1"}
+
+
 def application() -> Environment:
     path = shutil.which("blender")
     if not path:
@@ -67,7 +77,7 @@ def application() -> Environment:
         return Environment("blender", (0,), [], f"{path} --version says {head[:80]!r}")
     version = tuple(int(v) for v in found.groups() if v is not None)
     command = [path, "--background", "--factory-startup", "--python-exit-code", "1", "--python"]
-    return Environment(f"blender {'.'.join(map(str, version))}", version, command)
+    return Environment(f"blender {'.'.join(map(str, version))}", version, command, variables=bytecode(write=False))
 
 
 def find() -> list[Environment]:

@@ -17,6 +17,7 @@ import time
 import traceback
 from pathlib import Path
 
+os.environ.pop("PYTHONPYCACHEPREFIX", None)  # other interpreters that a test starts have modules of their own
 job = json.loads(Path(os.environ["RIFFLER_TEST_JOB"]).read_text())
 sys.path[:0] = [*job["paths"], str(Path(__file__).resolve().parent.parent)]
 

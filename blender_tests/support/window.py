@@ -42,6 +42,7 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
         path.write_text(json.dumps(job))
         (Path(resources) / "scripts" / "addons").mkdir(parents=True)
         variables = {
+            **application.variables,
             "RIFFLER_TEST_JOB": str(path),
             "BLENDER_USER_RESOURCES": resources,
             "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
