@@ -19,7 +19,8 @@ from .plan.properties import (
     RifflerPlanObject,
 )
 from .program.properties import RifflerVerify
-from .sculpt.fields_without_undo import RifflerStrokeFields, RifflerToolFields
+from .sculpt.fields_without_undo import RifflerHandToolFields, RifflerStrokeFields, RifflerToolFields
+from .sculpt.hand_tool_properties import RifflerHandTool
 from .sculpt.properties import RifflerSculpt
 from .sculpt.tool_properties import RifflerTool
 from .stock.properties import (
@@ -35,6 +36,7 @@ from .stock.properties import (
 class RifflerScene(bpy.types.PropertyGroup):
     stock: PointerProperty(type=RifflerStock)
     tool: PointerProperty(type=RifflerTool)
+    hand_tool: PointerProperty(type=RifflerHandTool)
     cutter: PointerProperty(type=RifflerCutter)
     cut: PointerProperty(type=RifflerCut)
     nc: PointerProperty(type=RifflerNc)
@@ -62,6 +64,7 @@ class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
 
     sculpt: PointerProperty(type=RifflerStrokeFields)
     tool: PointerProperty(type=RifflerToolFields)
+    hand_tool: PointerProperty(type=RifflerHandToolFields)
 
 
 CLASSES = (
@@ -69,6 +72,7 @@ CLASSES = (
     RifflerMachines,
     RifflerStock,
     RifflerTool,
+    RifflerHandTool,
     RifflerCutter,
     RifflerCut,
     RifflerNc,
@@ -89,6 +93,7 @@ CLASSES = (
     RifflerObject,
     RifflerStrokeFields,
     RifflerToolFields,
+    RifflerHandToolFields,
     RifflerProgress,
 )
 _OWNERS = (

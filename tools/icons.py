@@ -168,6 +168,32 @@ def ridge(height):
     return surface(lambda x: FLOOR + height * max(0.0, 1 - abs(x - CENTRE) / 70) ** 2)
 
 
+def whirl():
+    """Arms of a spiral on the stock."""
+    out = surface(lambda x: FLOOR - 20)
+    for k in range(3):
+        angle, r = np.radians(120 * k + np.linspace(0, 200, 30)), np.linspace(8, 84, 30)
+        inner, outer = ((CENTRE + (r + w) * np.cos(angle), FLOOR + 30 + 0.3 * (r + w) * np.sin(angle)) for w in (-6, 6))
+        out += band(list(zip(*inner, strict=True)), list(zip(*outer, strict=True)), ON)
+    return out
+
+
+def gouge():
+    """A groove, and a leaning blade that pushes a curl ahead."""
+    floor, y = FLOOR - 34, FLOOR - 28
+    stock = band(
+        [(14, 20), (150, 20), (150, 20), (241, 20)], [(14, floor), (150, floor), (150, FLOOR), (241, FLOOR)], STOCK
+    )
+    stock += band([(14, floor - 14), (150, floor - 14)], [(14, floor), (150, floor)], EDGE)
+    stock += band([(150, FLOOR - 14), (241, FLOOR - 14)], [(150, FLOOR), (241, FLOOR)], EDGE)
+    blade = convex([(150, y), (112, y + 34), (30, y + 34), (30, y)], TOOL) + convex(
+        [(150, y), (30, y), (30, y + 12), (137, y + 12)], SHADE
+    )
+    blade += convex([(30, y - 10), (30, y + 44), (-40, y + 44), (-40, y - 10)], (150, 110, 70, 255))
+    curl = band(arc(176, FLOOR + 30, 22, -90, 200, 24), arc(176, FLOOR + 30, 34, -90, 200, 24), AWAY)
+    return stock + turned(blade, -38, 150, y) + curl
+
+
 def plan():
     """A slim cutter that leans in a valley, and the ring that turns it."""
     low, slim = 30, [((np.array(t) - (CENTRE, 0)) * (0.62, 0.8) + (CENTRE, 0), c) for t, c in cutter(0)]

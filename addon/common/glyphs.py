@@ -28,6 +28,28 @@ def ring(centre, axis, radius: float, sides: int = 64) -> np.ndarray:
     return np.asarray(centre) + radius * (np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second)
 
 
+def outline(points) -> np.ndarray:
+    """The corners of the convex hull of points (n, 2), counter-clockwise, without those on its sides."""
+    ordered = sorted({(float(x), float(y)) for x, y in np.asarray(points, float)})
+    if len(ordered) < 3:
+        return np.array(ordered)
+
+    def side(line):
+        kept: list = []
+        for p in line:
+            while len(kept) > 1 and _left(kept[-2], kept[-1], p) <= 0:
+                kept.pop()
+            kept.append(p)
+        return kept[:-1]
+
+    return np.array(side(ordered) + side(ordered[::-1]))
+
+
+def _left(a, b, c) -> float:
+    """Twice the area of the triangle; positive if c is on the left of the line from a to b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
 def tube(line, places, sides: int = SIDES) -> np.ndarray:
     """A tube around `places` (k, 3), with radii `line` (k,). Its rings are perpendicular to the path."""
     places, radii = np.asarray(places, float), np.asarray(line, float)

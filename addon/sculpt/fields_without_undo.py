@@ -7,6 +7,7 @@ only.
 
 import bpy
 
+from .hand_tool_properties import RifflerHandTool
 from .properties import RifflerSculpt
 from .tool_properties import RifflerTool
 
@@ -54,3 +55,4 @@ def _chosen(source, key, number):
 
 RifflerStrokeFields = passed_on("RifflerStrokeFields", RifflerSculpt, "sculpt")
 RifflerToolFields = passed_on("RifflerToolFields", RifflerTool, "tool")
+RifflerHandToolFields = passed_on("RifflerHandToolFields", RifflerHandTool, "hand_tool")

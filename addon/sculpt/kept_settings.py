@@ -4,7 +4,7 @@ import bpy
 
 from ..blender import handlers
 
-GROUPS = ("sculpt", "tool")  # on scene.riffler
+GROUPS = ("sculpt", "tool", "hand_tool")  # on scene.riffler
 CLASSES = ()
 _kept = {}  # (scene, group, field) → value
 

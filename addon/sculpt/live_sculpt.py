@@ -15,6 +15,7 @@ import numpy as np
 import riffler
 
 from ..blender import refusals, versions
+from ..common import hand_tools
 from ..common.contents import Content
 from ..common.poses import moving
 from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, surfaces, undo_states
@@ -75,6 +76,7 @@ class LiveSculpt:
         self.pressure, self.step = 1.0, 0.0  # of the moves that are being applied: share of the depth; mm between dabs
         self.keep_out = None  # for symmetric copies, like BrushStroke's
         self.stroke = None  # StrokeRecord of the stroke in progress
+        self.lost = 0.0  # mm³ of thin walls that brushes could not keep in this stroke
         self.cut_off = False  # whether the box has clipped material that this stroke, or this session, added
         self._outline = None, None  # a tool, and its cutter's outline
         self.awake, self._idle = True, idle_detection.IdleClock()
@@ -146,7 +148,7 @@ class LiveSculpt:
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self.stroke, self.cut_off = StrokeRecord(self._content()), False
+        self.stroke, self.cut_off, self.lost = StrokeRecord(self._content()), False, 0.0
         versions.lighten(ob.data)
         self.persistence.begin_stroke(ob, self.token, self.stroke.begin)
 
@@ -174,8 +176,9 @@ class LiveSculpt:
             brush.record(self.stroke, 0, tool, rows, True)
 
     def carve(self, tool, poses, dt=None, mode="remove", new=True):
-        """Applies a brush (`mode`: its id) along the poses, (n, 6), and along their symmetric copies. `new`: they do
-        not continue the last ones. Returns the result of Brush.apply for the poses themselves."""
+        """Applies a brush (`mode`: its id) along the poses, (n, 6), or (n, 9) of a hand tool, and along their
+        symmetric copies. `new`: they do not continue the last ones. Returns the result of Brush.apply for the poses
+        themselves."""
         brush = brushes.of(mode)
         if brush.idle(self):
             return None
@@ -189,8 +192,11 @@ class LiveSculpt:
             self._restart()
         if not len(poses):
             return None
+        image = hand_tools.mirrored(tool) if brush.hand else tool
+        given = tool
         with self.stages.of("cut"):
-            for k, copy in enumerate(symmetry.copies(poses, self.maps, self.centre)):
+            for k, (copy, mirrors) in enumerate(symmetry.copies(poses, self.maps, self.centre, image is given)):
+                tool = image if mirrors else given
                 copy = self._kept_out(k, copy)
                 if copy is None:
                     continue
@@ -218,7 +224,7 @@ class LiveSculpt:
 
     def _extent(self, tool, poses):
         """(lower, upper) of the region that the cutter may touch, in rays."""
-        ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:]])
+        ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:6]])
         lower, upper = ends.min(axis=0) - tool.diameter / 2, ends.max(axis=0) + tool.diameter / 2
         return (lower - self.volume.lower) / self.volume.pitch, (upper - self.volume.lower) / self.volume.pitch
 
@@ -256,7 +262,7 @@ class LiveSculpt:
 
     def _restart(self):
         """Restores the state before the stroke."""
-        begin = self.stroke.begin.copy()
+        begin, self.lost = self.stroke.begin.copy(), 0.0
         self.volume, self.mask = begin.volume, begin.mask
         self.persistence.cancelled()
 

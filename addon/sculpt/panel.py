@@ -6,16 +6,10 @@ from ..blender import object_surfaces
 from ..blender.panel_parts import Sidebar, lines
 from ..common import presets, units
 from ..translations import CONTEXT
-from . import brushes, first_stroke, live_registry, sculpts
+from . import brushes, first_stroke, live_registry, sculpts, tool_panel
 
 AROUND = 4  # places of the pie reserved for brushes
 COLUMNS = 3  # of brushes with falloff in the sidebar
-
-
-def brush_of(context):
-    """The brush whose tool is active in the 3D view, or None."""
-    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
-    return brushes.of_tool(tool.idname) if tool is not None else None
 
 
 def choose(layout, brush, **how):
@@ -33,10 +27,13 @@ def draw_header(context, layout):
     stroke, _ = fields(context)
     if sculpts.active(context) is None:
         begin_button(layout, context)
-    preset = context.scene.riffler.tool.from_preset()
-    layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
-    layout.prop(stroke, "radius", text="Radius (mm)")
-    brush = brush_of(context)
+    brush = brushes.active(context)
+    hand = brush is not None and brush.hand
+    tool_panel.preset_menu(layout, context, hand)
+    if hand:
+        layout.prop(stroke, "width", text="Width (mm)")
+    else:
+        layout.prop(stroke, "radius", text="Radius (mm)")
     if brush is not None and brush.second == "STRENGTH":
         layout.prop(stroke, "strength", slider=True)
     else:
@@ -45,6 +42,8 @@ def draw_header(context, layout):
         layout.prop(stroke, "falloff", text="")
     elif brush is None or brush.second != "STRENGTH":
         layout.prop(stroke, "axis", text="")
+    if hand:
+        layout.prop(context.window_manager.riffler.hand_tool, "lean")
     row = layout.row(align=True)
     row.label(icon="MOD_MIRROR")
     row.prop(stroke, "mirror", expand=True)
@@ -70,8 +69,9 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         layout.use_property_decorate = False
         settings, _ = fields(context)
         self._tools(layout, context)
+        brush = brushes.active(context)
         column = layout.column(align=True)
-        column.prop(settings, "radius")
+        column.prop(settings, brush.first.lower() if brush is not None else "radius")
         column.prop(settings, "depth")
         layout.prop(settings, "axis")
         layout.prop(settings, "pressure")
@@ -79,7 +79,6 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
             layout.prop(settings, "feed")
         layout.prop(settings, "string")
         layout.prop(settings, "strength")
-        brush = brush_of(context)
         if brush is not None and brush.falloff:
             layout.prop(settings, "falloff")
         layout.prop(settings, "accumulate")
@@ -92,7 +91,7 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         self._work(layout, context)
 
     def _tools(self, layout, context):
-        active = brush_of(context)
+        active = brushes.active(context)
         row = layout.row(align=True)
         for brush in brushes.with_tool():
             if not brush.falloff:

@@ -46,13 +46,14 @@ def draw(context, brush, xy):
         return
     if held is None:
         _planes(context, ob, region, space, corner, zoom)
-    tool = context.scene.riffler.tool.dictionary()
+    own = context.scene.riffler
+    tool = (own.hand_tool if brush.hand else own.tool).dictionary()
     run = live_registry.of(ob)
     lines = None
     if run is not None and run.object is not None:
         lines = _on_surface(context, brush, run, tool, at)
     if lines is None:
-        lines = _beside(context, ob, region, space, at)
+        lines = _beside(context, brush, ob, region, space, at)
     _draw(lines, corner, brush.colour, zoom)
 
 
@@ -75,6 +76,8 @@ def _on_surface(context, brush, run, tool, at):
     pixels_per_mm = view.pixels_per_unit(pose[:3])
     if brush.falloff:
         return falloff_lines(0.5 * cutter.diameter, settings.falloff.lower(), pose, view)
+    if brush.hand:
+        return hand_tool_lines(cutter, pose, place, normal, view)
     return tool_lines(cutter, pose, place, normal, view)
 
 
@@ -95,6 +98,23 @@ def tool_lines(cutter, pose, place, normal, view):
     if place is not None:
         out.append((glyphs.ring(place, normal, 0.12 * cutter.diameter, 24), True, False))
     return [(view.project(points), closed, strong) for points, closed, strong in out]
+
+
+def hand_tool_lines(tool, pose, place, normal, view):
+    """The same for a hand tool: the outlines of its bodies and of their ground ends, which lie at the edge."""
+    frame = np.array([pose[6:], np.cross(pose[3:6], pose[6:]), pose[3:6]])
+    shown = SHOWN * tool.diameter
+    out = []
+    for hull in tool.hulls:
+        whole = np.c_[hull[:, :2], np.minimum(hull[:, 2], np.maximum(shown, hull[:, 2].min()))]
+        end = hull[hull[:, 2] < hull[:, 2].max() * (1 - 1e-9)]
+        for points, strong in ((whole, True), (end, False)):
+            pixels = view.project(pose[:3] + points @ frame)
+            if np.isfinite(pixels).all():
+                out.append((glyphs.outline(pixels), True, strong))
+    if place is not None:
+        out.append((view.project(glyphs.ring(place, normal, 0.12 * tool.diameter, 24)), True, False))
+    return out
 
 
 def falloff_lines(radius, falloff, pose, view):
@@ -148,7 +168,7 @@ def _ring(at, radius):
     return np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)]
 
 
-def _beside(context, ob, region, space, at):
+def _beside(context, brush, ob, region, space, at):
     """Draws the cursor off the surface and before the first stroke: a ring as wide as the tool at the sculpt's
     centre."""
     global pixels_per_mm
@@ -158,7 +178,9 @@ def _beside(context, ob, region, space, at):
     seen = ViewRays(meshes.matrix(space.perspective_matrix), (region.width, region.height))
     scale = float(np.cbrt(abs(np.linalg.det(meshes.matrix(ob.matrix_world)[:3, :3]))))
     pixels_per_mm = seen.pixels_per_unit(middle) * scale / mm
-    radius = 0.5 * scene_units.clean(context.scene.riffler.tool.diameter) * pixels_per_mm
+    own = context.scene.riffler
+    width = own.hand_tool.width if brush.hand else own.tool.diameter
+    radius = 0.5 * scene_units.clean(width) * pixels_per_mm
     return [(_ring(at, radius), True, True)]
 
 

@@ -42,6 +42,14 @@ def _set_radius(self, value):
     self.id_data.riffler.tool.diameter = 2 * value
 
 
+def _width(self):
+    return self.id_data.riffler.hand_tool.width
+
+
+def _set_width(self, value):
+    self.id_data.riffler.hand_tool.width = value
+
+
 class RifflerSculpt(bpy.types.PropertyGroup):
     depth: length("Depth", 0.5, "Depth that the tool cuts into the surface, or height that it adds, in mm", 1e-4, 1e4)
     axis: EnumProperty(name="Axis", items=AXES, default="NORMAL", description="Direction of the tool's axis")
@@ -143,9 +151,20 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         set=_set_radius,
         description="Radius of the cutter, in mm",
     )
+    width: FloatProperty(
+        name="Width",
+        min=0.01,
+        soft_max=100.0,
+        max=1e4,
+        precision=2,
+        get=_width,
+        set=_set_width,
+        description="Width of the hand tool, in mm",
+    )
 
     def choice(self, mode):
         """The settings of a stroke; `mode`: of sculpt/pure/brush_stroke.py."""
+        hand = self.id_data.riffler.hand_tool
         return brush_stroke.Choice(
             mode=mode,
             depth=units.clean(self.depth),
@@ -156,6 +175,8 @@ class RifflerSculpt(bpy.types.PropertyGroup):
             accumulate=self.accumulate,
             strength=units.clean(self.strength),
             falloff=self.falloff.lower(),
+            lean=units.clean(hand.lean),
+            turn=units.clean(hand.turn),
         )
 
     def maps(self):

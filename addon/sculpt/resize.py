@@ -13,6 +13,7 @@ from .pure import sizing
 
 FIELDS = (
     ("RADIUS", "Radius", "Radius of the cutter"),
+    ("WIDTH", "Width", "Width of the hand tool"),
     ("DEPTH", "Depth", "Depth of the stroke"),
     ("STRENGTH", "Strength", "Strength of smoothing, and of brushes that level, pull or pinch"),
 )
@@ -101,11 +102,15 @@ class RIFFLER_OT_size_step(bpy.types.Operator):
     bl_label = "Step Cutter Size"
     bl_options = set()
 
+    field: EnumProperty(
+        name="Field", items=FIELDS[:2], default="RADIUS", options={"SKIP_SAVE"}, description="Size to set"
+    )
     larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Make the cutter larger; off: smaller")
 
     def execute(self, context):
         settings = context.scene.riffler.sculpt
-        settings.radius = units.clean(settings.radius * (1 / SHORTER if self.larger else SHORTER))
+        name, step = self.field.lower(), 1 / SHORTER if self.larger else SHORTER
+        setattr(settings, name, units.clean(getattr(settings, name) * step))
         if context.area is not None:
             context.area.tag_redraw()
         return {"FINISHED"}

@@ -29,8 +29,11 @@ class TakesTool:
         name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="Tool as JSON; empty: the scene's tool"
     )
 
-    def tool_dict(self, context):
-        return tool_of_text(self.tool) if self.tool else context.scene.riffler.tool.dictionary()
+    def tool_dict(self, context, hand=False):
+        if self.tool:
+            return tool_of_text(self.tool)
+        own = context.scene.riffler
+        return (own.hand_tool if hand else own.tool).dictionary()
 
 
 def sculpt_poll(cls, context):

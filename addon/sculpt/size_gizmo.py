@@ -1,9 +1,10 @@
-"""Handles of the sculpt tool's cutter, next to the sculpt: one for its radius, one for the depth of strokes."""
+"""Handles of the sculpt tool's cutter, next to the sculpt: one for its radius, or half the width of a hand tool, and
+one for the depth of strokes."""
 
 import bpy
 from mathutils import Matrix, Vector
 
-from . import pointer, sculpts
+from . import brushes, pointer, sculpts
 
 COLOUR, STRONG = (1.0, 0.55, 0.2), (1.0, 0.8, 0.5)
 # share of the stock's length: distance from it to the centre of the handles, which does not move while they are dragged
@@ -36,13 +37,12 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
         ob = sculpts.active(context)
         if ob is None:
             return
-        settings = context.scene.riffler.sculpt
         middle, unit = _place(ob)
         for gizmo in (self._ring, self._radius, self._depth):
             gizmo.hide = unit == 0  # scaled to zero
         turn = ob.matrix_world.to_quaternion().to_matrix().to_4x4()
         # Without the view's scale, Blender ignores scale_basis, too.
-        self._ring.matrix_basis = Matrix.Translation(middle) @ turn @ Matrix.Scale(settings.radius * unit, 4)
+        self._ring.matrix_basis = Matrix.Translation(middle) @ turn @ Matrix.Scale(_size("radius") * unit, 4)
         # An arrow points along its z: along the stock's x for the radius, down for the depth.
         for gizmo, way in ((self._radius, (1, 0, 0)), (self._depth, (0, 0, -1))):
             lean = Vector((0, 0, 1)).rotation_difference(Vector(way)).to_matrix().to_4x4()
@@ -55,13 +55,27 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
         gizmo.length = 0.35
 
         def get():
-            return getattr(bpy.context.scene.riffler.sculpt, field) * _unit()
+            return _size(field) * _unit()
 
         def put(offset):
-            setattr(bpy.context.scene.riffler.sculpt, field, max(offset, 0.0) / (_unit() or 1.0))
+            size, settings = max(offset, 0.0) / (_unit() or 1.0), bpy.context.scene.riffler.sculpt
+            if field == "radius" and _has_width():
+                settings.width = 2 * size
+            else:
+                setattr(settings, field, size)
 
         gizmo.target_set_handler("offset", get=get, set=put)
         return gizmo
+
+
+def _has_width():
+    brush = brushes.active(bpy.context)
+    return brush is not None and brush.hand
+
+
+def _size(field):
+    settings = bpy.context.scene.riffler.sculpt
+    return 0.5 * settings.width if field == "radius" and _has_width() else getattr(settings, field)
 
 
 def _unit():

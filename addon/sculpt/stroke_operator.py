@@ -20,6 +20,8 @@ from .pure import brush_stroke, reach
 from .pure.stroke_path import Sample
 
 LOOK = 1 / 30  # s between two updates
+LOST = "{} of walls thinner than the pitch were lost: undo, and use Change Pitch in Clay for a finer pitch first"
+NO_FIXTURES = "Hand tools do not avoid fixtures: clear Fixtures in the panel Stroke, or use Carve"
 MODES = brushes.entries(brushes.BRUSHES.values())
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 
@@ -132,7 +134,9 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if why := brush.refusal(self._run.volume):
             raise ValueError(why)
         self._run.maps = settings.maps()
-        tool, choice, keep_out = self.tool_dict(context), settings.choice(mode), None
+        if brush.hand and settings.fixtures is not None:
+            raise ValueError(NO_FIXTURES)
+        tool, choice, keep_out = self.tool_dict(context, brush.hand), settings.choice(mode), None
         if settings.fixtures is not None and brush.clear:
             obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})
             if obstacle is not None:
@@ -197,6 +201,8 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if changed:
             if self._run.cut_off:
                 self.report({"WARNING"}, local(reach.CUT_OFF))
+            if self._run.lost > self._run.volume.pitch**3:  # less than a cell is not visible
+                self.report({"WARNING"}, local(LOST).format(units.format_volume(self._run.lost)))
             return {"FINISHED"}
         self._undone()
         self.report({"INFO"}, nothing(self._stroke, self._stroke.brush))

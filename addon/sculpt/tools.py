@@ -20,12 +20,12 @@ def _stroke(brush, **modifiers):
 
 def _size(brush):
     """F and Shift F, as in Sculpt Mode, where the second sets the strength; for a cutter it sets the depth."""
-    for field, shift in (("RADIUS", False), (brush.second, True)):
+    for field, shift in ((brush.first, False), (brush.second, True)):
         event = {"type": "F", "value": "PRESS", "shift": shift}
         yield ("riffler.resize", event, {"properties": [("field", field)]})
     for key, larger in (("LEFT_BRACKET", False), ("RIGHT_BRACKET", True)):
         event = {"type": key, "value": "PRESS", "repeat": True}
-        yield ("riffler.size_step", event, {"properties": [("larger", larger)]})
+        yield ("riffler.size_step", event, {"properties": [("field", brush.first), ("larger", larger)]})
 
 
 class SculptTool:

@@ -9,12 +9,13 @@ from pathlib import Path
 import riffler
 
 import addon
+from addon.common import hand_tools
 from addon.plan.pure import machine_fields
 
 ADDON = Path(addon.__file__).parent
 TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
 # Functions of ours that make a field or a line of a panel: the arguments that are shown.
-FIELDS_OF = {"length": (0, 2), "_folder": (1, 2)}
+FIELDS_OF = {"length": (0, 2), "angle": (0, 2), "_folder": (1, 2)}
 MESSAGES = {"wrapped": (1,), "deny": (1,), "poll_message_set": (0,), "local": (0,), "ValueError": (0,), "report": (1,)}
 SHOWN = {**FIELDS_OF, **MESSAGES}
 NOT_SHOWN = {
@@ -139,6 +140,13 @@ def of_shapes():
             yield from ((where, text) for text in (of.label, of.description))
 
 
+def of_hand_tools():
+    """(where, text) of the kinds of hand tools, their fields and their presets."""
+    for of in (*hand_tools.KINDS.values(), *hand_tools.ALL.values()):
+        yield from ((f"addon/common/hand_tools.py, {of.label}", text) for text in (of.label, of.description))
+    yield from (("addon/common/hand_tools.json", tool["name"]) for tool in hand_tools.presets())
+
+
 def of_strategies():
     """(where, text) of the strategies and of the fields that are made from their parameters."""
     for strategy in riffler.plan.STRATEGIES.values():
@@ -175,7 +183,7 @@ def of_descriptions():
 def found():
     """{text: its place}"""
     said = {}
-    for where, text in (*of_shapes(), *of_strategies()):
+    for where, text in (*of_shapes(), *of_hand_tools(), *of_strategies()):
         said.setdefault(text, where)
     for path, tree in sources():
         for line, text in shown(tree):

@@ -69,7 +69,7 @@ def test_the_toolbar_has_the_tools_in_two_groups_with_existing_icons():
 
 def test_fields_of_the_panels_are_the_scenes_but_make_no_undo_steps():
     scene, shown = bpy.context.scene.riffler, bpy.context.window_manager.riffler
-    for place in ("sculpt", "tool"):
+    for place in ("sculpt", "tool", "hand_tool"):
         kept, fields = getattr(scene, place), getattr(shown, place)
         own = set(fields.bl_rna.properties.keys()) - {"rna_type", "name"}
         assert own == set(kept.bl_rna.properties.keys()) - {"rna_type", "name", "fixtures", "preset"}

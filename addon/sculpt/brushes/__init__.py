@@ -26,6 +26,12 @@ def of_tool(identifier: str) -> Brush | None:
     return next((brush for brush in with_tool() if brush.tool == identifier), None)
 
 
+def active(context) -> Brush | None:
+    """The brush whose tool is active in the 3D view, or None."""
+    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
+    return of_tool(tool.idname) if tool is not None else None
+
+
 def of_journal(name: str) -> Brush | None:
     """A brush whose strokes have that name in a journal, or None."""
     return next((brush for brush in BRUSHES.values() if brush.journal == name), None)

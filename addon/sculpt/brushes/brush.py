@@ -28,7 +28,8 @@ class Brush(ABC):
     icon = ""  # icons/riffler.<icon>.dat; its tool is riffler.<icon>
     colour = (1.0, 1.0, 1.0)  # of the pointer
     opposite = ""  # id of the brush that Ctrl gives; "": the same
-    second = "DEPTH"  # the setting next to the radius: DEPTH or STRENGTH
+    first = "RADIUS"  # the setting of the key F: RADIUS or WIDTH
+    second = "DEPTH"  # the setting next to it: DEPTH or STRENGTH
 
     journal = ""  # name of its strokes in a journal, from which riffler.Journal replays them
     cuts = ""  # kind of its moves among the sculpt's cuts, which become NC code: "remove", "add", or ""
@@ -39,6 +40,7 @@ class Brush(ABC):
     clear = False  # avoids fixtures
     chips = False  # the material resists, so there is a force
     session = False  # usable in a device's session
+    hand = False  # works with the scene's hand tool, whose poses have a roll: (n, 9)
     falloff = False  # has a falloff; the cursor shows it instead of the cutter's shape
     drags = False  # follows the pointer in the plane of the view, not on the surface
     whole = False  # each move replaces the earlier ones: it is applied to the surface before the stroke

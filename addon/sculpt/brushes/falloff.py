@@ -72,6 +72,7 @@ class FalloffBrush(Brush):
             self.kind, poses, 0.5 * tool.diameter, protect=sculpt.mask, **self.options(sculpt, tool)
         )
         sculpt.cut_off |= made.clipped
+        sculpt.lost += made.lost
 
 
 class LevellingBrush(FalloffBrush):

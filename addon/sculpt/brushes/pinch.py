@@ -1,6 +1,10 @@
 """Pinch, crease and twist."""
 
-from .falloff import FalloffBrush, LevellingBrush
+import math
+
+from .falloff import FalloffBrush, LevellingBrush, share
+
+WHOLE = math.pi / 2  # rad that a pass of full strength turns the middle of the brush
 
 
 class Pinch(LevellingBrush):
@@ -41,4 +45,31 @@ class Ridge(Crease):
     sign = 1.0
 
 
-BRUSHES = (Pinch(), Crease(), Ridge())
+class Twist(FalloffBrush):
+    id, place, label, icon = "twist", 72, "Twist", "twist"
+    description = "Turn the surface counter-clockwise about its normal"
+    tip = "Turn the surface counter-clockwise in the brush (Ctrl: clockwise, Shift: smooth)"
+    colour = (0.75, 0.8, 0.4)
+    opposite = "untwist"
+    second = "STRENGTH"
+    kind = "twist"
+
+    def options(self, sculpt, tool):
+        strength = sculpt.strength * sculpt.pressure
+        angle = self.sign * WHOLE * strength * sculpt.step / (tool.diameter * share(sculpt.falloff))
+        return {"strength": 1.0, "amount": angle, "falloff": sculpt.falloff}
+
+    def picture(self, draw):
+        return draw.whirl() + draw.ring()
+
+
+class Untwist(Twist):
+    place, label, icon, tip = 73, "Untwist", "", ""
+    id = "untwist"
+    description = "Turn the surface clockwise about its normal"
+    colour = (0.5, 0.8, 0.75)
+    opposite = "twist"
+    sign = -1.0
+
+
+BRUSHES = (Pinch(), Crease(), Ridge(), Twist(), Untwist())

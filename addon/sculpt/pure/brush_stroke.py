@@ -17,11 +17,13 @@ from ...common import json_object
 from .. import brushes
 from .pull_path import PullMaker
 from .reach import outline_of
+from .roll import Roll, lowest
 from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
 from .view_rays import ViewRays, cross
 
 NUMBERS = len(Sample._fields)
 AROUND = 0.25  # share of the tool's width: the surface's normal is the mean within this distance
+STRING = 1 / 12  # share of a hand tool's width: it turns into the direction of its last movement of this length
 # Two rings. A spoke along an edge counts for either of its faces, as a pixel decides: of eight in each ring four did,
 # and the normal jumped by 33°. With odd numbers at most one in a ring can; turned by an eighth, none at an axis.
 OUTER, INNER = 9, 7
@@ -42,6 +44,8 @@ class Choice:
     accumulate: bool = False
     strength: float = 0.5  # of brushes: 0 to 1
     falloff: str = "smooth"  # of riffler.falloff
+    lean: float = 0.0  # rad, of a hand tool's handle
+    turn: float = 0.0  # rad, of its blade out of the direction of the stroke
 
 
 class BrushStroke:
@@ -57,11 +61,12 @@ class BrushStroke:
         self.looks: list[int] = []  # number of samples at each update of the surface
         self.removed, self.moves, self.lifted = 0.0, 0, 0
         self._apart = False  # poses that were kept out separate the last move and the next
-        self.pose: np.ndarray | None = None  # (6,) of the tool, mm
+        self.pose: np.ndarray | None = None  # (6,) of the tool, mm; (9,) of a hand tool
         self.force = self.torque = np.zeros(3)
         self._pressed = choice.pressure == "DEPTH"
         self._surface = surface or run.freeze()
         self._maker = self._make_maker()
+        self._roll = self._make_roll() if self.brush.hand else None
 
     def add(self, sample: Sample) -> bool:
         """True if something was carved."""
@@ -71,7 +76,8 @@ class BrushStroke:
 
     def end(self) -> bool:
         self._set()
-        return self._carve(self._maker.end())
+        carved = self._carve(self._maker.end())
+        return self._cut(self._roll.end()) or carved if self._roll is not None else carved
 
     def look(self) -> None:
         """Shows what was carved; with `accumulate` the tool follows the new surface from here on."""
@@ -81,11 +87,16 @@ class BrushStroke:
             self._surface = self._run.freeze()
 
     def hover(self, x: float, y: float):
-        """Preview of a click: the tool's pose (6,) and the surface's point and normal (mm); None off the surface.
+        """Preview of a click: the tool's pose and the surface's point and normal (mm); None off the surface.
         Carves nothing; for a brush that makes no stroke."""
         pieces = self._make_maker().add(Sample(x, y))
         found = self._surface.pick(*self._sight.ray(x, y))
-        return (pieces[0].poses[-1], *found[1:3]) if pieces and found is not None else None
+        if not pieces or found is None:
+            return None
+        if self.brush.hand:
+            roll = self._make_roll()
+            pieces = roll.add(pieces[0]) + roll.end()
+        return pieces[0].poses[-1], *found[1:3]
 
     def text(self) -> str:
         rows = [list(s) for s in self.samples]
@@ -119,9 +130,18 @@ class BrushStroke:
         )
         if self.brush.drags:
             return PullMaker(settings, self._pick, self._sight, self.brush.whole)
-        # A dab's centre is on the surface.
-        outline = np.zeros((1, 2)) if self.brush.falloff else outline_of(self.tool)
+        # A dab's centre is on the surface, and so is the tip of a hand tool until Roll holds it.
+        outline = np.zeros((1, 2)) if self.brush.falloff or self.brush.hand else outline_of(self.tool)
         return StrokeMaker(settings, outline, self._pick, view)
+
+    def _make_roll(self) -> Roll:
+        """A click's blade points up in the view. A pen that gives the axis has its own lean."""
+        if not self.tool.hulls:
+            raise ValueError(f"{self.tool.name} is no hand tool: it needs a gouge, a V-tool, a chisel or a knife")
+        lean = 0.0 if self._choice.axis == "TILT" else self._choice.lean
+        string = max(self._run.volume.pitch, self.tool.diameter * STRING)
+        up = self._sight.basis().up
+        return Roll(string, up, lean, self._choice.turn, lowest(self.tool.hulls, lean))
 
     def _pick(self, x: float, y: float) -> Hit | None:
         found = self._surface.pick(*self._sight.ray(x, y))
@@ -147,6 +167,11 @@ class BrushStroke:
         return mean / size if size > 1e-6 else normal
 
     def _carve(self, pieces) -> bool:
+        if self._roll is not None:
+            pieces = [rolled for piece in pieces for rolled in self._roll.add(piece)]
+        return self._cut(pieces)
+
+    def _cut(self, pieces) -> bool:
         for piece in pieces:
             poses, dt = piece.poses, piece.dt
             if self._keep_out is not None:

@@ -357,6 +357,8 @@ def states(folder: Path, about: dict, journal: riffler.Journal) -> list[str]:
 
 def brush_of(stroke) -> Brush:
     """A brush that makes such strokes of a riffler.Journal; one without cuts if there is none."""
+    if stroke.mode == brushes.of("hand").journal and stroke.poses.shape[1] == 9:
+        return brushes.of("hand")
     return brushes.of_journal(OF_SESSIONS.get(stroke.mode, stroke.mode)) or Brush()
 
 

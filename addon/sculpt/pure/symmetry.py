@@ -1,5 +1,5 @@
 """Copies of a stroke: mirrored in planes, rotated about an axis. A tool of revolution is its own mirror image, so a
-copy of a pose is a pose."""
+copy of a pose is a pose. A hand tool may need its mirror image (common/hand_tools.py)."""
 
 from __future__ import annotations
 
@@ -34,16 +34,19 @@ def turned(axis: str, angle: float) -> np.ndarray:
     return m
 
 
-def copies(poses: np.ndarray, about: list[np.ndarray], origin) -> list[np.ndarray]:
-    """The poses, (n, 6), under each of the maps about `origin` (3,), mm. A copy equal to an earlier one is left out: a
-    stroke in the mirror's plane is cut once."""
+def copies(poses: np.ndarray, about: list[np.ndarray], origin, symmetric=True) -> list[tuple[np.ndarray, bool]]:
+    """The poses, (n, 6) or (n, 9), under each of the maps about `origin` (3,), mm, and whether the map mirrors. A copy
+    equal to an earlier one is left out: a stroke in the mirror's plane is cut once. `symmetric`: the tool is its own
+    mirror image."""
     origin = np.asarray(origin, float)
     near = 1e-6 * (1.0 + np.abs(poses[:, :3]).max(initial=0.0))
-    kept: list[np.ndarray] = []
+    kept: list[tuple[np.ndarray, bool]] = []
     for m in about:
-        copy = np.hstack([(poses[:, :3] - origin) @ m.T + origin, poses[:, 3:] @ m.T])
-        if not any(np.abs(copy - other).max(initial=0.0) < near for other in kept):
-            kept.append(copy)
+        turned = [poses[:, k : k + 3] @ m.T for k in range(3, poses.shape[1], 3)]
+        copy, mirrors = np.hstack([(poses[:, :3] - origin) @ m.T + origin, *turned]), bool(np.linalg.det(m) < 0)
+        others = (other for other, its in kept if symmetric or its == mirrors)
+        if not any(np.abs(copy - other).max(initial=0.0) < near for other in others):
+            kept.append((copy, mirrors))
     return kept
 
 

@@ -15,6 +15,7 @@ from addon.sculpt.pure.stroke_record import StrokeRecord
 
 BALL = riffler.Tool.ball(6, 30)
 BOX = ((0, 0, 0), (40, 30, 10), 0.5, "xyz")
+CHISEL = riffler.Tool.chisel(6, 2, 0.5, 30, skew=0.3)
 POSES = np.array([[x, 10.0, 8.0, 0, 0, 1] for x in (5.0, 20.0, 35.0)])
 EVERY = pytest.mark.parametrize("brush", brushes.BRUSHES.values(), ids=str)
 
@@ -27,7 +28,7 @@ class Sculpt:
         self.volume.carve(riffler.Tool.flat(8, 30), POSES + np.array([0, 4.0, 0, 0, 0, 0]))
         self.mask = riffler.Volume.block((0, 0, 0), (20, 30, 10), 0.5, "xyz").grow((0, 0, 0), (40, 30, 10))
         self.strength, self.depth, self.falloff = 0.7, 0.4, "sharp"
-        self.pressure, self.step, self.cut_off = 1.0, 0.0, False
+        self.pressure, self.step, self.cut_off, self.lost = 1.0, 0.0, False, 0.0
 
     def bytes(self):
         return self.volume.to_bytes(), self.mask.to_bytes()
@@ -62,8 +63,10 @@ def test_a_journal_replays_exactly_what_a_brush_does(tmp_path, brush):
     before = sculpt.bytes()
     start = Content(sculpt.volume.copy(), [], sculpt.mask.copy())
     journal, stroke = LiveJournal(tmp_path, start, "t0"), StrokeRecord(start)
-    tool = brush.cutter(BALL, 0.5)
+    tool = brush.cutter(CHISEL if brush.hand else BALL, 0.5)
     for new, poses in ((True, POSES), (False, POSES[-1:] + np.array([[0.0] * 6, [0, 9.0, 0, 0, 0, 0]]))):
+        if brush.hand:
+            poses = np.hstack([poses, np.tile([1.0, 0, 0], (len(poses), 1))])
         sculpt.step = brush.step(sculpt, tool, poses, new)
         rows, dt = brush.moves(poses, np.full(len(poses) - 1, 0.1), new)
         brush.apply(sculpt, tool, rows, dt)

@@ -232,12 +232,12 @@ def test_a_stroke_along_the_mirrors_plane_is_cut_once():
     poses = np.array([[1.0, 5, 0, 0, 0, 1], [1, 8, 0, 0, 0, 1]])
     assert len(symmetry.copies(poses, symmetry.maps("X"), (1, 0, 0))) == 1
     both = symmetry.copies(poses, symmetry.maps("X"), (0, 0, 0))
-    assert np.allclose(both[1][:, 0], -1)
+    assert np.allclose(both[1][0][:, 0], -1) and [mirrors for _, mirrors in both] == [False, True]
 
 
 def test_copies_carve_a_symmetric_volume():
     volume = riffler.Volume.block((-10, -10, -5), (10, 10, 0), 0.25, "z")
-    for poses in symmetry.copies(
+    for poses, _ in symmetry.copies(
         np.array([[2, 3, -1, 0.28, 0, 0.96], [7, 6, -1, 0, 0.28, 0.96]]), symmetry.maps("XY"), (0, 0, 0)
     ):
         volume.carve(BALL, poses)

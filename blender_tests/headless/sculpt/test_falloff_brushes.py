@@ -11,7 +11,7 @@ from support import common
 SIZE = (400, 300)
 PIXEL = 0.1  # mm
 BRUSHES = ("CLAY", "DIG", "INFLATE", "DEFLATE", "FLATTEN", "SCRAPE", "FILL", "GRAB", "SNAKE_HOOK", "PINCH", "CREASE",
-           "RIDGE")  # fmt: skip
+           "RIDGE", "TWIST", "UNTWIST")  # fmt: skip
 TILT = np.radians(35)
 
 
