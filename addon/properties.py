@@ -21,6 +21,7 @@ from .plan.properties import (
 from .program.properties import RifflerVerify
 from .sculpt.fields_without_undo import RifflerHandToolFields, RifflerStrokeFields, RifflerToolFields
 from .sculpt.hand_tool_properties import RifflerHandTool
+from .sculpt.kept_strokes import RifflerKeptStroke, RifflerKeptStrokes, RifflerStrokeRow
 from .sculpt.properties import RifflerSculpt
 from .sculpt.tool_properties import RifflerTool
 from .stock.properties import (
@@ -57,6 +58,8 @@ class RifflerObject(bpy.types.PropertyGroup):
     token: StringProperty()
     mark: StringProperty(description="Identifier of the sculpt's session, which stays after its end")
     plan: PointerProperty(type=RifflerPlanObject)
+    stroke: PointerProperty(type=RifflerKeptStroke)
+    strokes: PointerProperty(type=RifflerKeptStrokes)
 
 
 class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
@@ -90,6 +93,9 @@ CLASSES = (
     RifflerScene,
     RifflerMesh,
     RifflerPlanObject,
+    RifflerKeptStroke,
+    RifflerStrokeRow,
+    RifflerKeptStrokes,
     RifflerObject,
     RifflerStrokeFields,
     RifflerToolFields,

@@ -8,9 +8,10 @@ from ..common.splines import Spline
 
 def splines(curve, depsgraph, to_stock):
     """The splines of a curve object from its control points (without modifiers and shape keys), mapped by `to_stock`
-    (4, 4): from the object's Blender units to millimetres in the stock's frame. Hidden splines are left out."""
+    (4, 4): from the object's Blender units to millimetres in the stock's frame. Hidden splines are left out. Without a
+    `depsgraph` the points are those of the curve itself, in Edit Mode the edited ones."""
     out = []
-    for s in curve.evaluated_get(depsgraph).data.splines:
+    for s in (curve if depsgraph is None else curve.evaluated_get(depsgraph)).data.splines:
         if s.hide:
             continue
         if s.type == "BEZIER":

@@ -55,7 +55,8 @@ KINDS = {
                   ("width", "radius", "bevel", "length")),
     "v_tool": Kind("V-Tool", "Two blades at an angle, which cut V-shaped grooves",
                    ("width", "angle", "bevel", "length")),
-    "chisel": Kind("Carving Chisel", "A flat blade, straight or skew", ("width", "thickness", "bevel", "skew", "length")),
+    "chisel": Kind("Carving Chisel", "A flat blade, straight or skew",
+                   ("width", "thickness", "bevel", "skew", "length")),
     "knife": Kind("Carving Knife", "A blade whose edge leads along the stroke, for fine cuts",
                   ("width", "thickness", "edge_angle", "length")),
 }  # fmt: skip

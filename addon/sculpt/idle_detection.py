@@ -9,12 +9,16 @@ TOOLS = "riffler."  # prefix of the sculpt tools' names
 
 
 def stays(ob):
-    """Whether a window has the sculpt as its active object, with one of the sculpt tools active."""
+    """Whether a window has the sculpt as its active object, with one of the sculpt tools active, or the curve of one of
+    its kept strokes."""
     return any(_has(window, ob) for window in bpy.context.window_manager.windows)
 
 
 def _has(window, ob):
-    if window.view_layer.objects.active != ob:
+    active = window.view_layer.objects.active
+    if active is not None and active.type == "CURVE" and active.parent == ob:
+        return bool(active.riffler.stroke.text)
+    if active != ob:
         return False
     tool = window.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
     return tool is not None and tool.idname.startswith(TOOLS)

@@ -47,7 +47,10 @@ class LiveSculpt:
         except Exception:
             chunks.sweep(self.mark, self.name)
             raise
+        before, kept = sculpt_store.token(ob.data), ob.riffler.strokes
         self._remember(ob)
+        if kept.token and kept.token == before:  # the same state, under a new token
+            kept.token = self.token
         if not ob.data.riffler.store.library:
             sculpt_store.mark_state(ob.data, self.token)
         self.persistence = persistence.Persistence(ob, self.token)
@@ -158,6 +161,11 @@ class LiveSculpt:
         versions.lighten(self.object.data)
 
     @property
+    def changed(self):
+        """Whether the stroke in progress has changed anything."""
+        return self.stroke is not None and self.stroke.begin.differs(self.volume, self.mask)
+
+    @property
     def in_stroke(self):
         return self.stroke is not None
 
@@ -259,6 +267,28 @@ class LiveSculpt:
         if label:
             bpy.ops.ed.undo_push(message=label)
         return True
+
+    def exchange(self, volume, tools_and_poses):
+        """In a stroke: replaces what was carved by a kept stroke's result, made along these poses."""
+        self.volume = volume
+        self.persistence.cancelled()
+        self.stroke.moves.clear()
+        self._surface.reached += [self._extent(tool, poses) for tool, poses in tools_and_poses]
+
+    def recut(self, content, tools_and_poses, token=""):
+        """Shows a content that follows from kept strokes (kept_strokes.py). Without a `token` the state keeps its
+        own: the strokes' curves, which undo restores, decide what it is."""
+        self._become(content)
+        self._surface.reached += [self._extent(tool, poses) for tool, poses in tools_and_poses]
+        self.show()
+        ob = self.object
+        if token:
+            self._remember(ob, token)
+        else:
+            state = State(self._content(), self._surface.shape, dict(self.chunks.fillings))
+            undo_states.snapshots.put(self.token, state)
+            self._facts = None
+        self.persistence.recut()
 
     def _restart(self):
         """Restores the state before the stroke."""

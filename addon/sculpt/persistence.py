@@ -115,6 +115,14 @@ class Persistence:
             begin = time.perf_counter()
             self._pack(ob, content, token, sculpt_store.blocks(content), begin)
 
+    def recut(self):
+        """The state was made from kept strokes: the next stroke begins a journal with it, and it is packed when the
+        hand rests."""
+        self._packing.stroke(time.monotonic())
+        self._task, self.packed = None, ""
+        if self.journal is not None:
+            self.journal.whole = False
+
     def went(self, token):
         """Undo or redo has restored this state."""
         self._task = None

@@ -114,6 +114,13 @@ class RifflerSculpt(bpy.types.PropertyGroup):
             "before the stroke"
         ),
     )
+    keep: BoolProperty(
+        name="Keep Strokes as Curves",
+        default=False,
+        description=(
+            "Keep each stroke of Carve, Add and Hand Tool as a curve object: moving its points cuts the sculpt again"
+        ),
+    )
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,

@@ -15,7 +15,18 @@ import riffler
 from ..blender import operator_parts
 from ..common import units
 from ..translations import local
-from . import brushes, draw_pace, fixtures, force_view, live_registry, mesh_edits, pointer, sculpt_work, sculpts
+from . import (
+    brushes,
+    draw_pace,
+    fixtures,
+    force_view,
+    kept_strokes,
+    live_registry,
+    mesh_edits,
+    pointer,
+    sculpt_work,
+    sculpts,
+)
 from .pure import brush_stroke, reach
 from .pure.stroke_path import Sample
 
@@ -134,9 +145,13 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if why := brush.refusal(self._run.volume):
             raise ValueError(why)
         self._run.maps = settings.maps()
+        self._choice = settings.choice(mode)
+        self._keep = settings.keep and brush.keeps
+        if self._keep:
+            kept_strokes.check(self._run)
         if brush.hand and settings.fixtures is not None:
             raise ValueError(NO_FIXTURES)
-        tool, choice, keep_out = self.tool_dict(context, brush.hand), settings.choice(mode), None
+        tool, choice, keep_out = self.tool_dict(context, brush.hand), self._choice, None
         if settings.fixtures is not None and brush.clear:
             obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})
             if obstacle is not None:
@@ -193,8 +208,17 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
 
     def _finish(self, context):
         """Makes the stroke a state; Blender makes the undo step when the operator finishes."""
+        kept = 0
         try:
+            made, ob = self._stroke, self._run.object
+            if self._keep and self._run.stroke is not None and self._run.changed:
+                dropped = kept_strokes.keep(context, self._run, made, self._choice)
+                kept = 1
+                if dropped:
+                    self.report({"WARNING"}, local(kept_strokes.DROPPED))
             changed = self._run.finish_stroke(context)
+            if kept and not changed:
+                kept_strokes.drop_last(ob)
         except operator_parts.ERRORS as error:
             self._undone()
             return operator_parts.fail(self, error)

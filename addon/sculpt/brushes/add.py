@@ -23,7 +23,7 @@ class Add(Brush):
     colour = (0.3, 0.65, 1.0)
     opposite = "remove"
     journal = cuts = "add"
-    puts_on = chips = session = True
+    puts_on = chips = session = keeps = True
     done = "added"
     no_stroke = "no stroke where the stock's box has room; use Grow Box in Clay to enlarge it"
     unchanged = "Nothing was added: the stock's box is full there, or protected. Use Grow Box in Clay to enlarge it"

@@ -41,6 +41,7 @@ class Brush(ABC):
     chips = False  # the material resists, so there is a force
     session = False  # usable in a device's session
     hand = False  # works with the scene's hand tool, whose poses have a roll: (n, 9)
+    keeps = False  # its strokes can be kept as curves
     falloff = False  # has a falloff; the cursor shows it instead of the cutter's shape
     drags = False  # follows the pointer in the plane of the view, not on the surface
     whole = False  # each move replaces the earlier ones: it is applied to the surface before the stroke

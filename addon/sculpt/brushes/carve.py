@@ -10,7 +10,7 @@ class Carve(Brush):
     colour = (1.0, 0.45, 0.2)
     opposite = "add"
     journal = cuts = "remove"
-    clear = chips = session = True
+    clear = chips = session = keeps = True
     done = "removed"
 
     def apply(self, sculpt, tool, poses, dt):

@@ -10,7 +10,7 @@ class HandTool(Brush):
     colour = (0.95, 0.8, 0.35)
     first = "WIDTH"
     journal = "remove"
-    shapes = chips = hand = True  # no machine makes such cuts, so they are not among the sculpt's
+    shapes = chips = hand = keeps = True  # no machine makes such cuts, so they are not among the sculpt's
     done = "removed"
 
     def path(self, axis, depth, diameter, pitch):

@@ -17,13 +17,12 @@ from ...common import json_object
 from .. import brushes
 from .pull_path import PullMaker
 from .reach import outline_of
-from .roll import Roll, lowest
+from .roll import STRING, Roll, lowest
 from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
 from .view_rays import ViewRays, cross
 
 NUMBERS = len(Sample._fields)
 AROUND = 0.25  # share of the tool's width: the surface's normal is the mean within this distance
-STRING = 1 / 12  # share of a hand tool's width: it turns into the direction of its last movement of this length
 # Two rings. A spoke along an edge counts for either of its faces, as a pixel decides: of eight in each ring four did,
 # and the normal jumped by 33°. With odd numbers at most one in a ring can; turned by an eighth, none at an axis.
 OUTER, INNER = 9, 7
@@ -60,6 +59,7 @@ class BrushStroke:
         self.samples: list[Sample] = []
         self.looks: list[int] = []  # number of samples at each update of the surface
         self.removed, self.moves, self.lifted = 0.0, 0, 0
+        self.paths: list[list[np.ndarray]] = []  # (n, 6) of the pointer's own tool, without its roll: pieces that join
         self._apart = False  # poses that were kept out separate the last move and the next
         self.pose: np.ndarray | None = None  # (6,) of the tool, mm; (9,) of a hand tool
         self.force = self.torque = np.zeros(3)
@@ -97,6 +97,17 @@ class BrushStroke:
             roll = self._make_roll()
             pieces = roll.add(pieces[0]) + roll.end()
         return pieces[0].poses[-1], *found[1:3]
+
+    @property
+    def heading(self) -> np.ndarray:
+        """Where the blade of a click points."""
+        return self._sight.basis().up
+
+    @property
+    def kept_paths(self) -> list[np.ndarray]:
+        """(n, 6) for each part of the stroke: without the way down to the depth, unless it is a click."""
+        whole = [np.vstack(parts) for parts in self.paths]
+        return [path[1:] if len(path) > 2 else path for path in whole]
 
     def text(self) -> str:
         rows = [list(s) for s in self.samples]
@@ -140,8 +151,7 @@ class BrushStroke:
             raise ValueError(f"{self.tool.name} is no hand tool: it needs a gouge, a V-tool, a chisel or a knife")
         lean = 0.0 if self._choice.axis == "TILT" else self._choice.lean
         string = max(self._run.volume.pitch, self.tool.diameter * STRING)
-        up = self._sight.basis().up
-        return Roll(string, up, lean, self._choice.turn, lowest(self.tool.hulls, lean))
+        return Roll(string, self.heading, lean, self._choice.turn, lowest(self.tool.hulls, lean))
 
     def _pick(self, x: float, y: float) -> Hit | None:
         found = self._surface.pick(*self._sight.ray(x, y))
@@ -168,6 +178,8 @@ class BrushStroke:
 
     def _carve(self, pieces) -> bool:
         if self._roll is not None:
+            for piece in pieces:
+                self._note(piece.poses, piece.new)
             pieces = [rolled for piece in pieces for rolled in self._roll.add(piece)]
         return self._cut(pieces)
 
@@ -183,6 +195,8 @@ class BrushStroke:
                 poses, dt = kept
                 self.lifted += int((~(poses[:, None] == piece.poses).all(axis=2).any(axis=1)).sum())
             cut = self._run.carve(self.tool, poses, dt=dt, mode=self._choice.mode, new=piece.new or self._apart)
+            if self._roll is None:
+                self._note(poses, piece.new or self._apart)
             self._apart = False
             self.moves += len(poses) - 1
             self.pose = poses[-1]
@@ -192,6 +206,12 @@ class BrushStroke:
             if len(cut.force):
                 self.force, self.torque = np.array(cut.force[-1]), np.array(cut.torque[-1])
         return bool(pieces)
+
+    def _note(self, poses, new) -> None:
+        if new or not self.paths:
+            self.paths.append([poses])
+        else:
+            self.paths[-1].append(poses[1:])
 
 
 def across(normal: np.ndarray) -> np.ndarray:

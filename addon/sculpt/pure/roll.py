@@ -13,6 +13,7 @@ import numpy as np
 
 from .stroke_path import Piece
 
+STRING = 1 / 12  # share of the tool's width: it turns into the direction of its last movement of this length
 SHARP = np.cos(np.radians(60))  # a larger change of direction lifts the blade
 
 

@@ -1,5 +1,7 @@
 """Hand tools: the direction of the blade along a stroke, what a groove removes, and mirrored copies."""
 
+import itertools
+
 import numpy as np
 import pytest
 import riffler
@@ -33,7 +35,7 @@ def test_a_blade_points_along_a_circle_from_its_first_row_on():
     assert [piece.new for piece in pieces] == [True] + [False] * (len(pieces) - 1)
     rows = np.vstack([pieces[0].poses, *(piece.poses[1:] for piece in pieces[1:])])
     assert len(rows) == len(a) + 1, "nothing is left out"
-    assert all(np.array_equal(b.poses[0], a.poses[-1]) for a, b in zip(pieces, pieces[1:], strict=False))
+    assert all(np.array_equal(b.poses[0], a.poses[-1]) for a, b in itertools.pairwise(pieces))
     along = np.c_[-np.sin(a), np.cos(a), 0 * a]
     angle = np.degrees(np.arccos(np.clip((rows[1:, 6:] * along).sum(axis=1), -1, 1)))
     assert angle.max() < 6, "the string lags by half its length and a step"
@@ -81,7 +83,7 @@ class Carving(Run):
 
 @pytest.mark.parametrize("lean", [0.0, 1.0, 1.3])
 def test_a_v_tool_cuts_the_groove_of_its_sections(run, lean):
-    """A section of the blade that leans back by `lean`, perpendicular to the stroke: it is as steep as its ground end."""
+    """A section perpendicular to the stroke of a blade that leans back by `lean` is as steep as its ground end."""
     run = Carving(run.volume)
     depth = 2.0
     short, _ = cut(run, 10, depth=depth, lean=lean)
