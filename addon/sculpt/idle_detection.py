@@ -16,8 +16,8 @@ def stays(ob):
 
 def _has(window, ob):
     active = window.view_layer.objects.active
-    if active is not None and active.type == "CURVE" and active.parent == ob:
-        return bool(active.riffler.stroke.text)
+    if active is not None and active.type == "CURVE":
+        return any(row.curve == active for row in ob.riffler.strokes.rows)
     if active != ob:
         return False
     tool = window.workspace.tools.from_space_view3d_mode("OBJECT", create=False)

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 import riffler
 from bpy.props import BoolProperty, CollectionProperty, IntProperty, PointerProperty, StringProperty
+from mathutils import Matrix
 
 from ..blender import curve_objects, handlers, meshes, packed_images
 from ..common.contents import Content
@@ -23,6 +24,7 @@ from .pure.stroke_history import StrokeHistory, Wanted
 CLASSES = ()
 FIT = 0.1  # pitches: largest distance of a kept curve from the stroke that was made
 EXACT = 0.02  # pitches: of the poses from the curve
+TIE = "Riffler Sculpt"  # name of the constraint by which a curve moves with its sculpt
 PAUSE = 1 / 30  # s from a change of a curve to its cut
 WAIT = 0.5  # s, while a stroke is made or something renders
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
@@ -87,13 +89,31 @@ def sculpts_with_strokes():
     return [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob) and ob.riffler.strokes.rows]
 
 
+def sculpt_of(curve):
+    """The sculpt with a stroke along this curve object, or None."""
+    return next(
+        (ob for ob in sculpts_with_strokes() if any(row.curve == curve for row in ob.riffler.strokes.rows)), None
+    )
+
+
 def frame(ob, curve):
-    """(4, 4): Blender units of the curve → mm of the sculpt. A child's is exact for any place of the sculpt."""
-    if curve.parent != ob or curve.parent_type != "OBJECT" or curve.constraints:
+    """(4, 4): Blender units of the curve → mm of the sculpt. If the curve is tied to the sculpt, it is the same for any
+    place of the sculpt."""
+    if curve.parent is not None or [c.name for c in curve.constraints] != [TIE] or curve.constraints[0].target != ob:
         return sculpts.from_object(ob, curve)
-    m = meshes.matrix(curve.matrix_parent_inverse) @ meshes.matrix(curve.matrix_basis)
+    m = meshes.matrix(curve.matrix_basis)
     m[:3] *= sculpts.shown_mm_per_unit(ob.data)
     return m
+
+
+def tie(ob, curve):
+    """Lets a curve without a parent move with the sculpt, from where it is. A child would be displayed at each vertex
+    of the sculpt's hidden mesh (chunks.hide)."""
+    if curve.parent is not None or curve.constraints:
+        return
+    curve.matrix_basis = ob.matrix_world.inverted() @ curve.matrix_basis
+    made = curve.constraints.new("CHILD_OF")
+    made.name, made.target, made.inverse_matrix = TIE, ob, Matrix()
 
 
 def _link(ob):
@@ -297,7 +317,9 @@ def _curve_object(context, ob, name, lines):
     curve = bpy.data.objects.new(name, data)
     curve.show_in_front = True
     collection_of(context, ob).objects.link(curve)
-    curve.parent = ob
+    curve.matrix_basis = ob.matrix_world
+    tie(ob, curve)
+    curve.matrix_basis = Matrix()  # without the rounding of the product
     return curve
 
 

@@ -15,8 +15,8 @@ NO_STROKE = "The sculpt has no kept strokes: turn Keep Strokes as Curves on, or 
 def sculpt_of(context):
     """The active sculpt, or that of the active stroke's curve."""
     ob = context.object
-    if ob is not None and ob.type == "CURVE" and sculpts.is_sculpt(ob.parent):
-        return ob.parent
+    if ob is not None and ob.type == "CURVE":
+        return kept_strokes.sculpt_of(ob)
     return sculpts.active(context)
 
 

@@ -38,9 +38,7 @@ class RIFFLER_OT_stroke_add_curves(bpy.types.Operator):
             if kept_strokes.begin(ob, content):
                 self.report({"WARNING"}, kept_strokes.DROPPED)
             for curve, stroke in strokes:
-                matrix = curve.matrix_world.copy()
-                curve.parent = ob
-                curve.matrix_world = matrix
+                kept_strokes.tie(ob, curve)
                 kept_strokes.add_row(ob, curve, stroke)
             context.view_layer.update()
             kept_strokes.edit(ob)

@@ -8,7 +8,7 @@ import bpy
 
 from support import harness
 
-PIXELS = True
+PIXELS = False
 stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
 
 
@@ -61,7 +61,9 @@ def steps(screen):
     stroke.press(screen, *stroke.pixel(screen, (30, 34, 20)), "RELEASE")
     yield 0.7
     stroke.module("sculpt.pure.stroke_history").StrokeHistory.follow = follow
-    print(f"{len(updates)} cuts in {time.perf_counter() - begin:.1f} s, {1000 * sum(updates) / len(updates):.1f} ms each")
+    print(
+        f"{len(updates)} cuts in {time.perf_counter() - begin:.1f} s, {1000 * sum(updates) / len(updates):.1f} ms each"
+    )
     assert len(updates) > 3, "the sculpt follows the drag, not only its end"
     yield from screen.shot("kept-strokes-1-bent")
     screen.key("Z", ctrl=True)

@@ -92,7 +92,12 @@ def test_strokes_become_curves_and_the_sculpt_is_what_they_carve():
     assert run.persistence.journal.state(run.token).volume.to_bytes() == bytes_of(name), "after a crash, too"
     curve = rows(name)[0].curve
     assert curve.data.splines[0].type == "NURBS" and len(curve.data.splines[0].points) < 12
-    assert curve.parent == sculpt(name) and not sculpt(name).data.is_editmode
+    before = bytes_of(name)
+    sculpt(name).location, sculpt(name).rotation_euler = (7, 3, 1), (0.3, 0.2, 0.1)
+    bpy.context.view_layer.update()
+    assert np.allclose(curve.matrix_world, sculpt(name).matrix_world), "a curve moves with its sculpt"
+    bend(curve, 0.0)
+    assert bytes_of(name) == before == replayed(name)
 
 
 def test_a_bent_curve_cuts_again_and_undo_goes_back():
