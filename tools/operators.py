@@ -24,9 +24,10 @@ ADDON = "riffler_addon"
 # Topic → its operators. Every registered one stands in exactly one, which `page` checks.
 TOPICS = {
     "Stock and tools": ["new_stock", "add_solid", "fit_pitch", "rebuild", "millimetres", "scene_unit",
-                        "tool_preset"],
+                        "tool_preset", "hand_tool_preset"],
     "Sculpting": ["stroke", "stroke_elsewhere", "make_sculpt", "edits_first", "resize", "size_step", "frame", "leave",
-                  "cut_curve", "cut_recording"],
+                  "cut_curve", "cut_recording", "stroke_add_curves", "stroke_edit", "stroke_move", "stroke_remove",
+                  "strokes_restore", "strokes_settle"],
     "Clay": ["resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
     "Devices": ["pen_sculpt", "pen_stop", "pen_home", "pen_reset"],
     "Meshes and files": ["detail", "to_mesh", "show_deviation", "hide_deviation", "import_cad", "retessellate",

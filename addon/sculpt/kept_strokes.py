@@ -41,7 +41,7 @@ def _switched(self, context):
 
 
 class RifflerKeptStroke(bpy.types.PropertyGroup):
-    """On a curve object: what its stroke is, besides its curve (pure/stroke_curves.py)."""
+    """On a curve object: what its stroke is, without its curve (pure/stroke_curves.py)."""
 
     text: StringProperty(description="The stroke's tool, mode and axes, as JSON; empty: no stroke")
 
@@ -205,7 +205,7 @@ def begin(ob, content):
 
 
 def restore(ob):
-    """Makes the sculpt what its strokes give, whatever has changed it since. ValueError if they cannot be cut."""
+    """Makes the sculpt what its strokes give, without the changes since then. ValueError if they cannot be cut."""
     own = ob.riffler.strokes
     token, made, own.token, own.made = own.token, own.made, _token(ob), ""
     _made.pop(own.token, None)

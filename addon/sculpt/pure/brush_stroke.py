@@ -105,7 +105,7 @@ class BrushStroke:
 
     @property
     def kept_paths(self) -> list[np.ndarray]:
-        """(n, 6) for each part of the stroke: without the way down to the depth, unless it is a click."""
+        """(n, 6) for each part of the stroke: without the descent to the depth, unless it is a click."""
         whole = [np.vstack(parts) for parts in self.paths]
         return [path[1:] if len(path) > 2 else path for path in whole]
 

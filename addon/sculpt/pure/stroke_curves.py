@@ -1,6 +1,6 @@
 """Strokes as curves: splines fitted to the poses of a stroke, and the poses of a spline that was edited.
 
-A curve has the places of the tool's tip. The tool's axes are kept beside it, at equal shares of its length: they stay
+A curve has the places of the tool's tip. The tool's axes are kept apart, at equal shares of its length: they stay
 with these shares when control points are moved, added or removed.
 """
 

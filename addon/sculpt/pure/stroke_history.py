@@ -37,7 +37,7 @@ class StrokeHistory:
 
     @property
     def stats(self):
-        """Of the last edit."""
+        """Statistics of the last edit."""
         return self._history.stats()
 
     def follow(self, wanted: list[Wanted]) -> list[Chain]:

@@ -1,4 +1,4 @@
-"""Strokes as curves: the fit's distance, the way back to poses, and a history that follows any list to the byte."""
+"""Strokes as curves: the fit's distance, the poses of a curve, and a history that follows any list to the byte."""
 
 import itertools
 
