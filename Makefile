@@ -52,7 +52,7 @@ soak:  ## Plan by feel for ten minutes; make STROKES strokes and UNDOS steps of 
 	$(python) blender_tests/run.py --soak --seed $(or $(SEED),1) $(if $(STROKES),--strokes $(STROKES)) \
 	  $(if $(UNDOS),--undos $(UNDOS)) $(if $(EXAMPLES),--examples $(EXAMPLES))
 
-stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mesh VOLUMES random volumes, follow STROKES strokes, hold tools at POSES, machine PARTS random parts, from SEED, and check each
+stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mesh VOLUMES random volumes, follow STROKES strokes, hold tools at POSES, machine PARTS random parts, make DABS of brushes, from SEED, and check each
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stress riffler_history_stress riffler_mesh_stress riffler_contact_stress riffler_tests
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
@@ -65,6 +65,7 @@ stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mes
 	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_tasks.py -k many_tasks
 	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_finish_patterns.py
 	$(python) native/tests/python/machining_stress.py --parts $(or $(PARTS),200) --seed $(or $(SEED),1)
+	$(python) native/tests/python/brush_stress.py --dabs $(or $(DABS),100000) --seed $(or $(SEED),1)
 
 fuzz:  ## Fuzz every reader of files for SECONDS each, from SEED, under the sanitizers (TARGETS="rs274 ply" for some): build/fuzz
 	@$(ready) cpp-tests

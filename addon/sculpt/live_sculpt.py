@@ -413,11 +413,12 @@ class LiveSculpt:
             self._identity.written(ob)
 
     def _part_copies(self, ob):
-        """Makes duplicates sculpts of their own, with the displayed state. Objects that share the mesh show it once the
-        session has ended."""
+        """Makes duplicates sculpts of their own, with the state that was displayed when they were made. Objects that
+        share the mesh show it once the session has ended."""
         for other in [o for o in bpy.data.objects if o.riffler.mark == self.mark and o != ob]:
+            state = undo_states.snapshots.get(other.riffler.token)
             other.riffler.mark = other.riffler.token = ""
             if not sculpts.is_sculpt(other) or other.data == ob.data:
                 continue
-            sculpts.commit(other.data, self._content(), self.mm)
+            sculpts.commit(other.data, self._content() if state is None else state.content.copy(), self.mm)
             chunks.reveal(other)

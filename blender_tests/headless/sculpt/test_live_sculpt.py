@@ -246,6 +246,20 @@ def test_linked_duplicates_share_their_strokes():
     nothing_is_left()
 
 
+def test_a_duplicate_has_the_state_in_which_it_was_made():
+    name = sculpt()
+    made = stroke(name, 1)
+    ob = bpy.data.objects[name]
+    copy = ob.copy()
+    copy.data = ob.data.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    common.push("copy")
+    last = stroke(name, 2)
+    live().end_all()
+    assert common.content(copy).volume.to_bytes() == made != last
+    assert common.content(ob).volume.to_bytes() == last
+
+
 def test_a_sheared_sculpt_is_refused_with_the_remedy():
     name = sculpt()
     ob, above = bpy.data.objects[name], bpy.data.objects.new("Above", None)
