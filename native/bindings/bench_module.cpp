@@ -11,6 +11,7 @@
 #include "bench/sweep_error.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
+#include "reference/hull_path.hpp"
 #include "stress/mesh_run.hpp"
 #include "stress/sculpting_run.hpp"
 
@@ -51,6 +52,20 @@ py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
   {
     const NoGil release;
     out = bench::MeshDistance(mesh)(std::span(points, n));
+  }
+  return take<double>(std::move(out));
+}
+
+py::array_t<double> hull_distances(const Tool& tool, const Doubles& poses, double step, const Doubles& array) {
+  std::vector<std::vector<Vec3>> hulls;
+  for (const tool::Hull& hull : tool.hulls()) hulls.emplace_back(hull.vertices.begin(), hull.vertices.end());
+  const std::vector<RolledPose> path = to_rolled_poses(poses, "poses");
+  const std::vector<Vec3> points = to_vec3s(array, "points");
+  std::vector<double> out(points.size());
+  {
+    const NoGil release;
+    const reference::HullPath distance(hulls, path, step);
+    for (std::size_t k = 0; k < points.size(); ++k) out[k] = distance(points[k], 1.0);
   }
   return take<double>(std::move(out));
 }
@@ -207,6 +222,10 @@ void bind(py::module_& m) {
       py::arg("rays"), py::arg("seed") = 1,
       R"(Compares random rays of a carved block with the independent reference: a dict of ``error`` (n,), mm along the ray
 or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
+  m.def(
+      "hull_distances", &hull_distances, py::arg("tool"), py::arg("poses"), py::arg("step"), py::arg("points"),
+      "Signed distances (mm) of points from a hand tool at poses (n, 9), by poses that lie densely in time: no corner "
+      "moves farther than `step` between two. Above 1 mm, any value above it.");
   m.def("mesh_distances", &mesh_distances, py::arg("points"), py::arg("mesh"),
         "Distance (n,) of points from a mesh, mm, by a search of its own; for points that are close to it.");
   bind_contact(m);
