@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import riffler
 
 STEEPEST = math.radians(85)
+MARGIN = 1.5  # depths that a chip is lifted: a surface is not flat
 
 
 class Size(NamedTuple):
@@ -83,6 +85,17 @@ def tool_dict(kind: str, sizes: dict, name: str = "") -> dict:
     if name:
         tool["name"] = name
     return tool
+
+
+def opened(tool: riffler.Tool, lean: float, depth: float) -> riffler.Tool:
+    """The tool with the room that its chip leaves through: the body, moved out of the material by a little more than
+    the depth (mm), and everything between. Without it, the chip above the blade would stay at the end of a stroke, and
+    in a groove deeper than the blade is high. The handle leans back by `lean` (rad)."""
+    if not depth > 0 or not tool.hulls:
+        return tool
+    out = MARGIN * depth * np.array([math.sin(lean), 0.0, math.cos(lean)])  # of the material, in the tool's frame
+    hulls = [np.vstack([hull, hull + out]).tolist() for hull in tool.hulls]
+    return riffler.Tool.from_dict({"kind": "convex", "hulls": hulls, "name": tool.name})
 
 
 def mirrored(tool: riffler.Tool) -> riffler.Tool:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import riffler
 
-from ...common import json_object
+from ...common import hand_tools, json_object
 from .. import brushes
 from .pull_path import PullMaker
 from .reach import outline_of
@@ -56,6 +56,8 @@ class BrushStroke:
         self.brush = brushes.of(choice.mode)
         self._run, self._sight, self._choice, self._keep_out = run, sight, choice, keep_out
         self.tool = self.brush.cutter(riffler.Tool.from_dict(tool), choice.depth)
+        if self.brush.hand:
+            self.tool = hand_tools.opened(self.tool, self._lean, choice.depth)
         self.samples: list[Sample] = []
         self.looks: list[int] = []  # number of samples at each update of the surface
         self.removed, self.moves, self.lifted = 0.0, 0, 0
@@ -97,6 +99,10 @@ class BrushStroke:
             roll = self._make_roll()
             pieces = roll.add(pieces[0]) + roll.end()
         return pieces[0].poses[-1], *found[1:3]
+
+    @property
+    def _lean(self) -> float:
+        return 0.0 if self._choice.axis == "TILT" else self._choice.lean
 
     @property
     def heading(self) -> np.ndarray:
@@ -149,9 +155,8 @@ class BrushStroke:
         """A click's blade points up in the view. A pen that gives the axis has its own lean."""
         if not self.tool.hulls:
             raise ValueError(f"{self.tool.name} is no hand tool: it needs a gouge, a V-tool, a chisel or a knife")
-        lean = 0.0 if self._choice.axis == "TILT" else self._choice.lean
         string = max(self._run.volume.pitch, self.tool.diameter * STRING)
-        return Roll(string, self.heading, lean, self._choice.turn, lowest(self.tool.hulls, lean))
+        return Roll(string, self.heading, self._lean, self._choice.turn, lowest(self.tool.hulls, self._lean))
 
     def _pick(self, x: float, y: float) -> Hit | None:
         found = self._surface.pick(*self._sight.ray(x, y))

@@ -104,6 +104,14 @@ def test_the_deepest_corner_of_a_skew_blade_is_at_the_depth(run):
     assert heights.min() == pytest.approx(-0.8, abs=0.1)
 
 
+@pytest.mark.parametrize("preset", ["Gouge No. 3, 12 mm", "V-Tool 60°, 6 mm"])
+def test_the_chip_of_a_deep_groove_is_removed(run, preset):
+    run, tool = Carving(run.volume), hand_tools.preset(preset)
+    _, after = cut(run, 20, hand_tools.tool_dict(tool["kind"], tool), depth=3.0, lean=tool["lean"])
+    counts, spans = after.intervals("z")
+    assert counts.max() == 1 and spans[:, 1].min() < -2.4
+
+
 def test_a_tool_without_an_edge_is_refused(run):
     with pytest.raises(ValueError, match="is no hand tool"):
         cut(run, 10, {"kind": "ball", "diameter": 6.0, "length": 30.0})
