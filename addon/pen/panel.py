@@ -11,7 +11,7 @@ WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
 class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_pen"
     bl_label = "Pen (mm, N)"
-    bl_order = 7
+    bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

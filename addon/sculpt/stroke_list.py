@@ -152,7 +152,7 @@ class RIFFLER_UL_strokes(bpy.types.UIList):
 class RIFFLER_PT_strokes(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_strokes"
     bl_label = "Kept Strokes"
-    bl_order = 4
+    bl_order = 6
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod

@@ -157,7 +157,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
 class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_cut"
     bl_label = "Cut (mm)"
-    bl_order = 8
+    bl_order = 9
 
     def draw(self, context):
         layout = self.layout
@@ -181,7 +181,7 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
 class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_export"
     bl_label = "Export"
-    bl_order = 9
+    bl_order = 10
 
     def draw(self, context):
         layout = self.layout

@@ -10,7 +10,7 @@ from . import properties, result
 class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_result"
     bl_label = "Mesh (mm)"
-    bl_order = 6
+    bl_order = 7
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

@@ -291,6 +291,7 @@ def test_every_text_of_the_translations_is_one_of_the_addons():
     import ast
 
     known = {text for s in riffler.plan.STRATEGIES.values() for text in (s.action, s.missing)}
+    known |= {tool["name"] for tool in common.part("common.hand_tools").presets()}
     for _, p, rna in shown():
         known |= {(p or rna).name, (p or rna).description}
         if p is not None and p.type == "ENUM":
