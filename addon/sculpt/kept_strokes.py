@@ -30,6 +30,7 @@ WAIT = 0.5  # s, while a stroke is made or something renders
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
 MASKED = "Keep Strokes as Curves needs a sculpt without a mask: clear the mask, or turn it off"
 CHANGED = "Other operations have changed the sculpt since these strokes"
+BORROWED = "The strokes belong to the sculpt that this one is a copy of: use Settle Strokes"
 DROPPED = "Other operations had changed the sculpt: the earlier strokes are plain curves now, and part of the sculpt"
 
 _links = {}  # id of a base (packed_images.identity) → _Link
@@ -76,8 +77,14 @@ def there(ob):
 
 
 def at_rest(ob):
-    """Whether other operations have changed the sculpt since its strokes were cut."""
-    return there(ob) and _token(ob) != ob.riffler.strokes.token
+    """Whether other operations have changed the sculpt since its strokes were cut, or the strokes are another's."""
+    return there(ob) and (_token(ob) != ob.riffler.strokes.token or borrowed(ob))
+
+
+def borrowed(ob):
+    """Whether its strokes move with another sculpt, whose copy this is."""
+    ties = [tie for row in ob.riffler.strokes.rows if row.curve is not None for tie in row.curve.constraints]
+    return any(tie.name == TIE and tie.target not in (None, ob) for tie in ties)
 
 
 def _token(ob):
@@ -189,7 +196,7 @@ def sync(ob, token=""):
 def edit(ob):
     """Cuts again after an operator has changed list or curves. ValueError: the caller undoes its change."""
     if at_rest(ob):
-        raise ValueError(CHANGED)
+        raise ValueError(BORROWED if borrowed(ob) else CHANGED)
     return sync(ob, uuid.uuid4().hex)
 
 
@@ -197,7 +204,7 @@ def begin(ob, content):
     """Makes ready for another stroke on the sculpt's content: with a new base, if its strokes do not give it. Returns
     how many strokes of an older list are no strokes any more."""
     own = ob.riffler.strokes
-    if own.base and _token(ob) == own.token:
+    if own.base and _token(ob) == own.token and not borrowed(ob):
         return 0
     dropped = new_base(ob, content)
     own.token = _token(ob)
@@ -206,6 +213,8 @@ def begin(ob, content):
 
 def restore(ob):
     """Makes the sculpt what its strokes give, without the changes since then. ValueError if they cannot be cut."""
+    if borrowed(ob):
+        raise ValueError(BORROWED)
     own = ob.riffler.strokes
     token, made, own.token, own.made = own.token, own.made, _token(ob), ""
     _made.pop(own.token, None)
@@ -232,9 +241,9 @@ def new_base(ob, content):
 def forget(ob):
     """Ends the list: its curves are plain curves, and their cuts part of the sculpt."""
     own = ob.riffler.strokes
-    count = len(own.rows)
+    count, others = len(own.rows), borrowed(ob)
     for row in own.rows:
-        if row.curve is not None:
+        if row.curve is not None and not others:
             row.curve.riffler.stroke.text = ""
     own.rows.clear()
     own.base, own.token, own.made = None, "", ""
@@ -252,7 +261,7 @@ def keep(context, run, made, choice):
     """Keeps a stroke that a live sculpt has just made, `made` a BrushStroke, before it is finished: the sculpt is cut
     along the curve in its place. Returns how many older strokes are no strokes any more."""
     ob, own, begin = run.object, run.object.riffler.strokes, run.stroke.begin
-    dropped = new_base(ob, begin) if not own.base or run.token != own.token else 0
+    dropped = new_base(ob, begin) if not own.base or run.token != own.token or borrowed(ob) else 0
     brush, pitch = made.brush, run.volume.pitch
     lines = [fit(path[:, :3], FIT * pitch)[0] for path in made.kept_paths]
     stroke = Stroke(

@@ -175,8 +175,11 @@ class RIFFLER_PT_strokes(Sidebar, bpy.types.Panel):
             return
         layout.operator(RIFFLER_OT_stroke_edit.bl_idname, icon="EDITMODE_HLT")
         if kept_strokes.at_rest(ob):
-            lines(layout, "Other operations have changed the sculpt", "since these strokes were cut", icon="ERROR")
-            layout.operator(RIFFLER_OT_strokes_restore.bl_idname)
+            if kept_strokes.borrowed(ob):
+                lines(layout, "The strokes belong to the sculpt", "that this one is a copy of", icon="ERROR")
+            else:
+                lines(layout, "Other operations have changed the sculpt", "since these strokes were cut", icon="ERROR")
+                layout.operator(RIFFLER_OT_strokes_restore.bl_idname)
         layout.operator(RIFFLER_OT_strokes_settle.bl_idname)
         for row in own.rows:
             if row.problem:

@@ -169,6 +169,25 @@ def test_curves_of_the_user_become_strokes():
     assert bytes_of(name) == replayed(name)
 
 
+def test_a_copy_of_the_sculpt_leaves_the_strokes_to_it():
+    name = stock()
+    three(name)
+    part("live_registry").end_all()
+    copy = sculpt(name).copy()
+    copy.data = sculpt(name).data.copy()
+    copy.location.x = 60
+    bpy.context.scene.collection.objects.link(copy)
+    bpy.context.view_layer.update()
+    before = bytes_of(copy.name)
+    bend(rows(name)[0].curve, 4)
+    assert bytes_of(copy.name) == before != bytes_of(name) == replayed(name)
+    common.select(copy)
+    common.refused(bpy.ops.riffler.strokes_restore, "use Settle Strokes")
+    assert bpy.ops.riffler.strokes_settle() == {"FINISHED"}
+    bend(rows(name)[0].curve, 2)
+    assert bytes_of(copy.name) == before and bytes_of(name) == replayed(name)
+
+
 def test_what_cannot_be_cut_is_named_and_nothing_changes():
     name = stock()
     three(name)
