@@ -180,12 +180,8 @@ def whirl():
 
 def gouge():
     """A groove, and a leaning blade that pushes a curl ahead."""
-    floor, y = FLOOR - 34, FLOOR - 28
-    stock = band(
-        [(14, 20), (150, 20), (150, 20), (241, 20)], [(14, floor), (150, floor), (150, FLOOR), (241, FLOOR)], STOCK
-    )
-    stock += band([(14, floor - 14), (150, floor - 14)], [(14, floor), (150, floor)], EDGE)
-    stock += band([(150, FLOOR - 14), (241, FLOOR - 14)], [(150, FLOOR), (241, FLOOR)], EDGE)
+    y = FLOOR - 28
+    stock = surface(lambda x: FLOOR - 34 if x < 150 else FLOOR)
     blade = convex([(150, y), (112, y + 34), (30, y + 34), (30, y)], TOOL) + convex(
         [(150, y), (30, y), (30, y + 12), (137, y + 12)], SHADE
     )
