@@ -6,12 +6,12 @@
 #include "bench/contact_run.hpp"
 #include "bench/direction_run.hpp"
 #include "bench/haptic_run.hpp"
+#include "bench/hull_distance.hpp"
 #include "bench/mesh_distance.hpp"
 #include "bench/scenes.hpp"
 #include "bench/sweep_error.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
-#include "reference/hull_path.hpp"
 #include "stress/mesh_run.hpp"
 #include "stress/sculpting_run.hpp"
 
@@ -57,15 +57,12 @@ py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
 }
 
 py::array_t<double> hull_distances(const Tool& tool, const Doubles& poses, double step, const Doubles& array) {
-  std::vector<std::vector<Vec3>> hulls;
-  for (const tool::Hull& hull : tool.hulls()) hulls.emplace_back(hull.vertices.begin(), hull.vertices.end());
   const std::vector<RolledPose> path = to_rolled_poses(poses, "poses");
   const std::vector<Vec3> points = to_vec3s(array, "points");
-  std::vector<double> out(points.size());
+  std::vector<double> out;
   {
     const NoGil release;
-    const reference::HullPath distance(hulls, path, step);
-    for (std::size_t k = 0; k < points.size(); ++k) out[k] = distance(points[k], 1.0);
+    out = bench::hull_distances(tool, path, step, points);
   }
   return take<double>(std::move(out));
 }
