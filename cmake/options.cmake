@@ -9,7 +9,9 @@ target_compile_options(
             # instructions. Results are the same to the bit.
             -fno-math-errno -fno-trapping-math)
 # A shared library is loaded only where something of it is called.
-target_link_options(riffler_options INTERFACE LINKER:--as-needed)
+if(NOT WIN32)
+  target_link_options(riffler_options INTERFACE LINKER:--as-needed)
+endif()
 if(RIFFLER_WERROR)
   target_compile_options(riffler_options INTERFACE -Werror)
 endif()

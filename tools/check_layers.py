@@ -22,13 +22,14 @@ GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
 OUTSIDE = re.compile(r"\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
 # Functions of the C library whose last bit is another one on another system, and what to call in their place.
 NOT_THE_SAME = {"std::hypot(": "geom::hypot"}
-# Headers of one kind of system, and where they may be used: base has the calls that the others need, the rest speaks to
-# devices, to programs of their makers, or tests on Linux alone.
+# Headers of one kind of system, and where they may be used: in the folders posix and windows, of which a build takes
+# one, and in what is for Linux alone: the program for makers' libraries, fuzzers and tests.
 OF_A_SYSTEM = re.compile(
     r"(?:sys|linux|net|netinet|arpa|asm)/|(?:alloca|dirent|dlfcn|fcntl|glob|grp|ifaddrs|link|malloc|netdb|poll|pthread"
     r"|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|ucontext|unistd|utime|windows|winsock2|io|process)\.h$"
 )
-SPEAKS_TO_THE_SYSTEM = {"base", "pen/hid", "pen/service", "pen/library", "arm_program", "fuzz", "tests"}
+OF_SYSTEMS = {"posix", "windows"}
+OF_LINUX = {"arm_program", "fuzz", "tests"}
 SPEAKS_TO_THREADS = "bindings/take_gil.c"  # in C, since Python ends threads here
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders outside the topics, and the topics and other such folders they may include. The reference must not share code
@@ -59,10 +60,14 @@ FOLDERS = {
     "pen/arms": [],
     "pen/haply": ["pen", "pen/hid", "pen/link", "pen/service"],
     "pen/hid": ["pen/link"],
+    "pen/hid/posix": ["pen/hid"],
+    "pen/hid/windows": ["pen/hid"],
     "pen/library": ["pen", "pen/hid", "pen/link"],
     "pen/link": [],
     "pen/models": ["pen", "pen/arms", "pen/hid"],
     "pen/service": ["pen/hid", "pen/link"],
+    "pen/service/posix": ["pen/hid", "pen/link", "pen/service"],
+    "pen/service/windows": ["pen/hid", "pen/link", "pen/service"],
     "pen/simulated": ["pen", "pen/arms", "pen/hid", "pen/link", "pen/models"],
 }
 # Topics that may include the pen's protocol and firmware.
@@ -142,10 +147,12 @@ def system_problems(root: Path) -> list[str]:
     problems = []
     for place, quote, name in includes(root, root / "native"):
         path = in_core(place).split("/")
-        if in_core(place) == SPEAKS_TO_THREADS:
+        if in_core(place) == SPEAKS_TO_THREADS or path[0] in OF_LINUX or OF_SYSTEMS & set(path):
             continue
-        if quote == "<" and OF_A_SYSTEM.match(name) and not {path[0], "/".join(path[:2])} & SPEAKS_TO_THE_SYSTEM:
-            problems.append(f"{place}: <{name}> is of one kind of system: call it in native/base")
+        if quote == "<" and OF_A_SYSTEM.match(name):
+            problems.append(f"{place}: <{name}> is of one kind of system: call it in native/base/posix and /windows")
+        elif quote == '"' and OF_SYSTEMS & set(name.split("/")):
+            problems.append(f"{place}: includes {name}, which other systems do not have")
     return problems
 
 

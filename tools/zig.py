@@ -24,6 +24,12 @@ PROGRAMS = {"cc": "cc", "c++": "c++", "ar": "ar", "ranlib": "ranlib"}
 EXPORTS = "{ global: PyInit_*; local: *; };\n"
 
 
+LINUX_LINKING = """set(CMAKE_MODULE_LINKER_FLAGS_RELEASE_INIT "-s -Wl,--version-script=FOLDER/exports.map")
+set(CMAKE_C_STANDARD_LIBRARIES FOLDER/math.o)
+set(CMAKE_CXX_STANDARD_LIBRARIES FOLDER/math.o)"""
+WINDOWS_LINKING = """set(CMAKE_MODULE_LINKER_FLAGS_RELEASE_INIT "-s")"""
+
+
 @dataclass(frozen=True)
 class Target:
     """`triple`: as Zig names it, with the C library's version. `system`, `processor`: as CMake names them. `flags`: for
@@ -56,6 +62,9 @@ class Target:
 
 # 2.28 is what Blender itself needs, 4.2 and later.
 LINUX = Target("linux-x86_64", "x86_64-linux-gnu.2.28", "Linux", "x86_64")
+# None of the macros of windows.h that take common words.
+WINDOWS = Target("windows-x86_64", "x86_64-windows-gnu", "Windows", "x86_64",
+                 ("-DWIN32_LEAN_AND_MEAN", "-DNOMINMAX"))  # fmt: skip
 
 
 def version() -> str:
@@ -76,8 +85,9 @@ def prepare(target: Target) -> None:
         options = f" -target {target.triple}" if name in {"cc", "c++"} else ""
         _write(script, f'#!/bin/sh\nexec "{program()}" {command}{options} "$@"\n')
         script.chmod(0o755)
-    _write(target.folder / "exports.map", EXPORTS)
-    make_math(target)
+    if target.system == "Linux":
+        _write(target.folder / "exports.map", EXPORTS)
+        make_math(target)
     if _write(target.toolchain, toolchain(target)):
         for kept in target.folder.glob("*/CMakeCache.txt"):  # it would keep the flags of the old one
             kept.unlink()
@@ -92,6 +102,7 @@ def make_math(target: Target) -> None:
 def toolchain(target: Target) -> str:
     """Libraries are looked for among the target's own alone: this machine's are of another system."""
     flags = " ".join(target.flags)
+    linking = LINUX_LINKING if target.system == "Linux" else WINDOWS_LINKING
     return f"""# Made by tools/zig.py.
 set(CMAKE_SYSTEM_NAME {target.system})
 set(CMAKE_SYSTEM_PROCESSOR {target.processor})
@@ -105,9 +116,7 @@ set(CMAKE_CXX_FLAGS_INIT "-fno-sanitize=undefined {flags}")
 foreach(kind EXE SHARED)
   set(CMAKE_${{kind}}_LINKER_FLAGS_RELEASE_INIT "-s")
 endforeach()
-set(CMAKE_MODULE_LINKER_FLAGS_RELEASE_INIT "-s -Wl,--version-script={target.folder}/exports.map")
-set(CMAKE_C_STANDARD_LIBRARIES {target.math})
-set(CMAKE_CXX_STANDARD_LIBRARIES {target.math})
+{linking.replace("FOLDER", str(target.folder))}
 set(CMAKE_FIND_ROOT_PATH {target.libraries})
 set(CMAKE_PREFIX_PATH {target.libraries})
 foreach(kind LIBRARY INCLUDE PACKAGE)

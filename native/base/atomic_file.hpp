@@ -13,9 +13,9 @@ namespace riffler::base {
 /// process give files away, its owner and group; a new file gets the usual ones. Refuses everything but regular files
 /// (folders, pipes, devices). Every failure throws std::runtime_error with the base name and the system's reason.
 ///
-/// The draft has no name until it is complete, so a killed process leaves nothing behind. On file systems without
-/// nameless files it is called `.NAME.riffler-XXXXXX` and locked; the next writer of the same file removes an abandoned
-/// one.
+/// The draft has no name until it is complete, so a killed process leaves nothing behind. On Windows, and on file
+/// systems without nameless files, it is called `.NAME.riffler-XXXXXX` and locked; the next writer of the same file
+/// removes an abandoned one.
 class AtomicFileWriter {
  public:
   explicit AtomicFileWriter(const std::filesystem::path& path);
@@ -34,7 +34,7 @@ class AtomicFileWriter {
   void discard() noexcept;
 
   std::filesystem::path target_;  // links resolved
-  std::string draft_;             // empty while the draft has no name
+  std::filesystem::path draft_;   // empty while the draft has no name
   int fd_ = -1;
 };
 

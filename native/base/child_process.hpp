@@ -1,8 +1,6 @@
 // Another program that this process starts and ends.
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 #include <vector>
 
@@ -10,8 +8,9 @@
 
 namespace riffler::base {
 
-/// A running program. It has the file descriptor `given` as its number 3, nothing else of ours but standard output and
-/// error, its own process group (so Ctrl C in a terminal does not reach it), and default signals.
+/// A running program. On Windows none can be started yet: the constructor throws. It has the file descriptor `given` as
+/// its number 3, nothing else of ours but standard output and error, its own process group (so Ctrl C in a terminal
+/// does not reach it), and default signals.
 class ChildProcess {
  public:
   static constexpr int kGiven = 3;
@@ -29,10 +28,10 @@ class ChildProcess {
   bool wait(double seconds) noexcept;
   /// How it ended, such as "it ended with code 3" or "it crashed (Segmentation fault)".
   std::string end_text() const;
-  pid_t id() const noexcept { return id_; }
+  int id() const noexcept { return id_; }
 
  private:
-  pid_t id_ = -1;
+  int id_ = -1;
   bool ended_ = false;
   int status_ = 0;
   HomeProcess home_;

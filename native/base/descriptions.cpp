@@ -5,8 +5,10 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "base/environment.hpp"
 #include "base/io.hpp"
 #include "base/nearest_word.hpp"
+#include "base/path_text.hpp"
 
 namespace riffler::base {
 
@@ -15,14 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path settings_folder() {
-  const auto variable = [](const char* name) { return std::getenv(name); };
+  const auto folder = [](const char* name) { return text_path(environment(name).value_or("")); };
 #ifdef _WIN32
-  if (const char* folder = variable("APPDATA"); folder && *folder) return folder;
+  return folder("APPDATA");
 #else
-  if (const char* folder = variable("XDG_CONFIG_HOME"); folder && *folder) return folder;
-  if (const char* home = variable("HOME"); home && *home) return fs::path(home) / ".config";
+  if (fs::path own = folder("XDG_CONFIG_HOME"); !own.empty()) return own;
+  const fs::path home = folder("HOME");
+  return home.empty() ? home : home / ".config";
 #endif
-  return {};
 }
 
 const ShippedText* shipped(const DescriptionCatalog& shelf, std::string_view name) {
@@ -53,14 +55,14 @@ std::vector<fs::path> own_files(const DescriptionCatalog& shelf) {
 }
 
 DescriptionText read(const fs::path& path) {
-  return {path.stem().string(), path.filename().string(), text_of(path)};
+  return {path_text(path.stem()), file_name(path), text_of(path)};
 }
 
 std::string own_summary(const DescriptionCatalog& shelf, const fs::path& path) {
-  if (shipped(shelf, path.stem().string()))
-    return std::string("not used: a ") + shelf.kind + " of this name comes with Riffler; rename " + path.string();
+  if (shipped(shelf, path_text(path.stem())))
+    return std::string("not used: a ") + shelf.kind + " of this name comes with Riffler; rename " + path_text(path);
   try {
-    return shelf.summary(text_of(path), path.filename().string());
+    return shelf.summary(text_of(path), file_name(path));
   } catch (const std::exception& e) {
     return std::string("cannot be read: ") + e.what();
   }
@@ -93,8 +95,8 @@ std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf)
   for (const ShippedText& s : shelf.shipped)
     out.push_back({std::string(s.name), shelf.summary(s.toml, std::string(s.name) + ".toml")});
   for (const fs::path& path : own_files(shelf)) {
-    const bool hidden = shipped(shelf, path.stem().string());
-    out.push_back({(hidden ? path.filename() : path.stem()).string(), own_summary(shelf, path)});
+    const bool hidden = shipped(shelf, path_text(path.stem()));
+    out.push_back({path_text(hidden ? path.filename() : path.stem()), own_summary(shelf, path)});
   }
   return out;
 }
@@ -102,12 +104,12 @@ std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf)
 DescriptionText find_description(const DescriptionCatalog& shelf, std::string_view name, const std::string& what) {
   if (const ShippedText* found = shipped(shelf, name))
     return {std::string(name), std::string(name) + ".toml", std::string(found->toml)};
-  if (name.ends_with(".toml")) return read(fs::path(name));
+  if (name.ends_with(".toml")) return read(text_path(std::string(name)));
   std::vector<std::string> names;
   for (const ShippedText& s : shelf.shipped) names.emplace_back(s.name);
   for (const fs::path& path : own_files(shelf)) {
-    if (path.stem() == name) return read(path);
-    names.push_back(path.stem().string());
+    if (path_text(path.stem()) == name) return read(path);
+    names.push_back(path_text(path.stem()));
   }
   std::string known;
   for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;

@@ -1,11 +1,11 @@
 #include "base/io.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <cstdio>
 #include <system_error>
 
 #include "base/atomic_file.hpp"
+#include "base/input_stream.hpp"
+#include "base/path_text.hpp"
 #include "riffler/base/error.hpp"
 
 namespace riffler::base {
@@ -15,21 +15,20 @@ namespace fs = std::filesystem;
 void check_regular(const fs::path& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
-  if (fs::is_directory(status)) throw FormatError(path.filename().string(), "", "is a directory, not a file");
+  if (fs::is_directory(status)) throw FormatError(file_name(path), "", "is a directory, not a file");
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw FormatError(path.filename().string(), "", "is a pipe or a device, not a file");
+    throw FormatError(file_name(path), "", "is a pipe or a device, not a file");
 }
 
 std::vector<std::uint8_t> read_file(const fs::path& path) {
-  const std::string name = path.filename().string();
+  const std::string name = file_name(path);
   check_regular(path);
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw FormatError(name, "", std::string("cannot be opened: ") + std::strerror(errno));
-  const std::streamoff size = in.tellg();
-  std::vector<std::uint8_t> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
-  in.seekg(0);
-  if (!bytes.empty() && !in.read(reinterpret_cast<char*>(bytes.data()), size))
-    throw FormatError(name, "byte " + std::to_string(in.gcount()), "cannot be read further");
+  const InputStream in = open_input(path);
+  std::error_code unknown;
+  const std::uintmax_t size = fs::file_size(path, unknown);
+  std::vector<std::uint8_t> bytes(unknown ? 0 : static_cast<std::size_t>(size));
+  if (!bytes.empty() && std::fread(bytes.data(), 1, bytes.size(), in.get()) != bytes.size())
+    throw FormatError(name, "byte " + std::to_string(std::ftell(in.get())), "cannot be read further");
   return bytes;
 }
 

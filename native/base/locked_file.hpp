@@ -31,7 +31,7 @@ class LockedFile {
 
  private:
   std::string name_;
-  int file_ = -1;
+  std::intptr_t file_ = -1;  // descriptor, on Windows the handle
 };
 
 }  // namespace riffler::base

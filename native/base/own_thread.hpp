@@ -1,9 +1,6 @@
 // Objects that belong to the process that made them: threads, what threads wait on, and processor time.
 #pragma once
 
-#include <unistd.h>
-
-#include <ctime>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -12,11 +9,14 @@
 
 namespace riffler::base {
 
+/// The system's number of this process.
+int process_number() noexcept;
+
 /// Remembers the process that made it. A forked process has copies of its parent's objects but none of its threads:
 /// waiting for such a thread would never end, and a lock that it held would never be released.
 class HomeProcess {
  public:
-  bool here() const noexcept { return pid_ == getpid(); }
+  bool here() const noexcept { return pid_ == process_number(); }
   /// Throws std::runtime_error in another process. `what` names the object in the message, such as "the session".
   void check(const char* what) const {
     if (!here())
@@ -25,7 +25,7 @@ class HomeProcess {
   }
 
  private:
-  pid_t pid_ = getpid();
+  int pid_ = process_number();
 };
 
 /// A T whose copy in a forked process is not destroyed: the destructor of a condition variable would wait for its
@@ -75,10 +75,6 @@ class OwnThread {
 };
 
 /// Processor time of this thread, s. Steps are measured with it, so that other load on the machine does not count.
-inline double thread_seconds() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double thread_seconds() noexcept;
 
 }  // namespace riffler::base

@@ -1,7 +1,5 @@
 #include "riffler/base/parallel.hpp"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -12,6 +10,9 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "base/environment.hpp"
+#include "base/processors.hpp"
 
 namespace riffler::base {
 
@@ -31,15 +32,13 @@ void set_thread_count(std::optional<int> count) {
 
 int thread_count() {
   if (const int chosen = chosen_count.load(std::memory_order_relaxed)) return chosen;
-  if (const char* text = std::getenv("RIFFLER_THREADS")) {
+  if (const std::optional<std::string> text = environment("RIFFLER_THREADS")) {
     char* end = nullptr;
-    const long wanted = std::strtol(text, &end, 10);
-    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, long{kMaxThreads}));
+    const long wanted = std::strtol(text->c_str(), &end, 10);
+    if (end != text->c_str() && *end == '\0' && wanted >= 1)
+      return static_cast<int>(std::min(wanted, long{kMaxThreads}));
   }
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
-  return std::max(1U, std::thread::hardware_concurrency());
+  return usable_processors();
 }
 
 namespace {

@@ -5,10 +5,8 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
 
-#include "base/overrun_guard.hpp"
-#include "base/system_bus.hpp"
 #include "riffler/base/thread_priority.hpp"
 
 namespace riffler::base {
@@ -16,15 +14,29 @@ namespace riffler::base {
 /// What a thread was granted, for other threads.
 class PriorityReport {
  public:
-  PriorityReport();
+  PriorityReport() : priority_{0, ThreadPriority::By::Nobody, "normal: real time was not asked for", {}} {}
 
   /// Never call it from the real-time thread.
-  ThreadPriority get() const;
-  void set(ThreadPriority priority);
+  ThreadPriority get() const {
+    if (overran_) return overran_priority();
+    const std::lock_guard lock(mutex_);
+    return priority_;
+  }
+  void set(ThreadPriority priority) {
+    const std::lock_guard lock(mutex_);
+    priority_ = std::move(priority);
+  }
   /// Set when the guard has made the thread normal.
   std::atomic<bool>& overran() { return overran_; }
 
  private:
+  static ThreadPriority overran_priority() {
+    return {0,
+            ThreadPriority::By::Nobody,
+            "normal: the thread ran too long without a pause, and the guard took its priority away",
+            {}};
+  }
+
   mutable std::mutex mutex_;
   ThreadPriority priority_;
   std::atomic<bool> overran_{false};
@@ -51,12 +63,8 @@ class RealTimeScope {
   void wait();
 
  private:
-  void ask_rtkit(pid_t thread, const RealTimeSettings& settings) noexcept;
-
-  PriorityReport& report_;
-  OverrunGuard guard_;
-  std::unique_ptr<BusCancel> cancel_;
-  std::thread asker_;
+  class Grant;
+  std::unique_ptr<Grant> grant_;
 };
 
 /// What the system would grant a thread of this process now. Takes as long as rtkit, 1 s at most.

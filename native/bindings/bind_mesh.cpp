@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/path_text.hpp"
 #include "bindings/mesh_class.hpp"
 #include "bindings/task.hpp"
 #include "bindings/typed.hpp"
@@ -88,11 +89,11 @@ MeshPtr read_3mf(const std::filesystem::path& path) {
 }
 
 bool is_3mf(const std::filesystem::path& path) {
-  return mesh::equal_ignoring_case(path.extension().string(), ".3mf");
+  return mesh::equal_ignoring_case(base::path_text(path.extension()), ".3mf");
 }
 
 bool is_cad(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = base::path_text(path.extension());
   constexpr std::array names{".step", ".stp", ".iges", ".igs", ".brep"};
   return std::any_of(names.begin(), names.end(),
                      [&](const char* name) { return mesh::equal_ignoring_case(extension, name); });

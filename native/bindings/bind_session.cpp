@@ -1,4 +1,5 @@
 // riffler.Session
+#include "base/path_text.hpp"
 #include "bindings/session_class.hpp"
 #include "bindings/session_frame.hpp"
 #include "riffler/dexel/file/file.hpp"
@@ -27,14 +28,14 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
   const std::filesystem::path snapshot = beside("-stock.rvol"), mask = beside("-mask.rvol");
   for (const std::filesystem::path& p : {path, snapshot, mask})
     if (std::filesystem::exists(p))
-      throw py::value_error(p.filename().string() + " is there already: take another name, or move it away");
+      throw py::value_error(base::file_name(p) + " is there already: take another name, or move it away");
   save(use.volume, snapshot);
   if (self.mask) save(*self.mask, mask);
   auto writer = std::make_unique<session::JournalWriter>(path, session::JournalWriter::Keep::Rules);
   const dexel::Frame& frame = use.volume.frame();
   for (const auto& [key, value] : notes) writer->add_note(py::cast<std::string>(key), py::cast<std::string>(value));
-  writer->set_stock({frame.box, frame.pitch, frame.directions, snapshot.filename().string(),
-                     self.mask ? mask.filename().string() : ""});
+  writer->set_stock(
+      {frame.box, frame.pitch, frame.directions, base::file_name(snapshot), self.mask ? base::file_name(mask) : ""});
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
   session::JournalStreamOptions options;

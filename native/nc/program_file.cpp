@@ -8,6 +8,7 @@
 
 #include "base/bytes.hpp"
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "base/planes.hpp"
 #include "riffler/base/error.hpp"
 #include "riffler/base/parallel.hpp"
@@ -404,7 +405,7 @@ void save_program(const Program& program, const std::filesystem::path& path, con
 }
 
 Program load_program(const std::filesystem::path& path, const Progress& progress) {
-  return parse_program(base::read_file(path), path.filename().string(), progress);
+  return parse_program(base::read_file(path), base::file_name(path), progress);
 }
 
 }  // namespace riffler::nc

@@ -1,10 +1,10 @@
 #include "nc/source.hpp"
 
-#include <cerrno>
 #include <cstring>
 #include <system_error>
 
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "riffler/base/error.hpp"
 
 namespace riffler::nc {
@@ -19,10 +19,9 @@ void NcPlace::fail(const std::string& what) const {
   throw FormatError(file, "line " + std::to_string(line), what + (shown.empty() ? "" : " [" + shown + "]"));
 }
 
-NcSource::NcSource(const std::filesystem::path& path, std::size_t window) : name_(path.filename().string()) {
+NcSource::NcSource(const std::filesystem::path& path, std::size_t window) : name_(base::file_name(path)) {
   base::check_regular(path);
   file_ = base::open_input(path);
-  if (!file_) throw FormatError(name_, "", std::string("cannot be opened: ") + std::strerror(errno));
   std::error_code unknown;
   if (const auto size = std::filesystem::file_size(path, unknown); !unknown) size_ = static_cast<double>(size);
   buffer_.resize(window);

@@ -6,6 +6,7 @@
 
 #include "base/io.hpp"
 #include "base/locked_file.hpp"
+#include "base/path_text.hpp"
 #include "riffler/base/error.hpp"
 #include "session/journal_records.hpp"
 
@@ -39,7 +40,7 @@ Journal parse_journal(View bytes, const std::string& name, const Progress& progr
 }
 
 Journal read_journal(const std::filesystem::path& path, const Progress& progress) {
-  return parse_journal(base::read_file(path), path.filename().string(), progress);
+  return parse_journal(base::read_file(path), base::file_name(path), progress);
 }
 
 std::vector<std::uint8_t> to_bytes(const Journal& journal) {
@@ -64,7 +65,7 @@ struct JournalWriter::File : base::LockedFile {
   using LockedFile::LockedFile;
 };
 
-JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(path.filename().string()) {
+JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(base::file_name(path)) {
   file_ = std::make_unique<File>(path);
   Journal journal;
   if (file_->size() == 0) {

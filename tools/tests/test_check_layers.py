@@ -38,17 +38,25 @@ def test_a_function_whose_bits_differ_between_systems_is_refused_in_the_core(tre
     ]
 
 
-def test_headers_of_one_system_are_for_base_and_devices(tree):
+def test_headers_of_one_system_are_for_its_folders(tree):
     text = "#include <unistd.h>\n#include <sys/stat.h>\n#include <csignal>\n#include <zlib.h>\n"
-    for path in ("base/a.cpp", "pen/hid/b.cpp", "tests/nc/c_test.cpp", "include/riffler/base/d.hpp"):
+    for path in ("base/posix/a.cpp", "pen/hid/posix/b.cpp", "tests/nc/c_test.cpp"):
         tree(path, text)
+    tree("base/windows/a.cpp", "#include <windows.h>\n")
     assert check_layers.system_problems(tree.root) == []
     tree("nc/a.cpp", text)
+    tree("base/a.cpp", text)
     tree("include/riffler/pen/b.hpp", text)
     assert check_layers.system_problems(tree.root) == [
-        f"native/{path}:{line}: <{name}> is of one kind of system: call it in native/base"
-        for path in ("include/riffler/pen/b.hpp", "nc/a.cpp")
+        f"native/{path}:{line}: <{name}> is of one kind of system: call it in native/base/posix and /windows"
+        for path in ("base/a.cpp", "include/riffler/pen/b.hpp", "nc/a.cpp")
         for line, name in ((1, "unistd.h"), (2, "sys/stat.h"))
+    ]
+    for path in ("nc/a.cpp", "base/a.cpp", "include/riffler/pen/b.hpp"):
+        tree(path, "")
+    tree("base/a.cpp", '#include "base/posix/b.hpp"\n')
+    assert check_layers.system_problems(tree.root) == [
+        "native/base/a.cpp:1: includes base/posix/b.hpp, which other systems do not have"
     ]
 
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "base/planes.hpp"
 #include "dexel/file/format.hpp"
 #include "riffler/base/error.hpp"
@@ -264,7 +265,7 @@ Volume from_bytes(std::span<const std::uint8_t> bytes, const std::string& name, 
 }
 
 Volume load(const std::filesystem::path& path, const Progress& progress) {
-  return from_bytes(base::read_file(path), path.filename().string(), progress);
+  return from_bytes(base::read_file(path), base::file_name(path), progress);
 }
 
 }  // namespace riffler::dexel

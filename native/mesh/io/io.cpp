@@ -5,6 +5,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "mesh/io/obj.hpp"
 #include "mesh/io/ply.hpp"
 #include "mesh/io/scan.hpp"
@@ -36,10 +37,10 @@ Mesh stl(std::span<const std::uint8_t> bytes, const std::string& name, const Pro
 constexpr Format kFormats[] = {{".stl", stl, put_stl}, {".obj", from_obj, put_obj}, {".ply", from_ply, put_ply}};
 
 const Format& format_of(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = base::path_text(path.extension());
   for (const Format& format : kFormats)
     if (equal_ignoring_case(extension, format.extension)) return format;
-  throw std::invalid_argument(path.filename().string() +
+  throw std::invalid_argument(base::file_name(path) +
                               ": a mesh file ends in .stl, .obj or .ply (from Python also .3mf), not in " +
                               in_quotes(extension));
 }
@@ -48,7 +49,7 @@ const Format& format_of(const std::filesystem::path& path) {
 
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
-  return format.from(base::read_file(path), path.filename().string(), progress);
+  return format.from(base::read_file(path), base::file_name(path), progress);
 }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/path_text.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/expression.hpp"
 
@@ -183,10 +184,10 @@ std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::s
   // A name may only be part of a file's name.
   const bool is_plain = label.find_first_of("/\\") == label.npos && label[0] != '.';
   for (const fs::path& folder : folders_) {
-    const fs::path path = folder / (label + ".ngc");
+    const fs::path path = folder / base::text_path(label + ".ngc");
     std::error_code code;
     if (!is_plain || !fs::is_regular_file(path, code)) continue;
-    File& file = files_[path.string()];
+    File& file = files_[base::path_text(path)];
     if (!file.source) file.source = std::make_unique<NcSource>(path);
     if (const auto mark = look(file)) return {&file, *mark};
     place_.fail(file.source->name() + " holds no subroutine " + show(label));

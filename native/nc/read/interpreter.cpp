@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/path_text.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
 #include "nc/machine/machines.hpp"
@@ -40,7 +41,8 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
   given_.compensation = take_compensation_rule(taken);
   diameters_.take(options.options, taken);
-  if (const std::string folder = taken.path("subroutines"); !folder.empty()) given_.folders.emplace_back(folder);
+  if (const std::string folder = taken.path("subroutines"); !folder.empty())
+    given_.folders.push_back(base::text_path(folder));
   given_.parameters = taken.path("parameters");
   given_.units = taken.given("units");
   if (taken.word("units", {"mm", "inch"}, "mm") == "inch") modes_.unit = kInch;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/read/apt_reader.hpp"
@@ -85,7 +86,7 @@ Program parse_whole(std::string_view text, const std::string& file, const ReadOp
 
 Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
   const std::vector<std::uint8_t> bytes = base::read_file(path);
-  return parse_whole({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.filename().string(), options,
+  return parse_whole({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, base::file_name(path), options,
                      language, folder_of(path));
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/io.hpp"
+#include "base/path_text.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
 
@@ -314,7 +315,7 @@ std::shared_ptr<const SinumerikRoutine> SinumerikInterpreter::find_routine(const
   if (file == files_->end()) return nullptr;
   const std::vector<std::uint8_t> bytes = base::read_file(file->second);
   auto text = std::make_shared<const std::string>(bytes.begin(), bytes.end());
-  NcPlace place{file->second.filename().string(), 0, {}};
+  NcPlace place{base::file_name(file->second), 0, {}};
   std::vector<SinumerikRoutine> all = sinumerik_routines(*text, place);
   SinumerikRoutine& first = all.front();
   first.text = text;
@@ -329,7 +330,7 @@ void SinumerikInterpreter::index_folders() {
     std::size_t count = 0;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
       if (++count > kMaxFiles) break;
-      const std::string file = at->path().filename().string(), name = sinumerik_name(file);
+      const std::string file = base::file_name(at->path()), name = sinumerik_name(file);
       std::string upper;
       for (const char c : file) upper += NcCursor::upper(c);
       if (!upper.ends_with("SPF") && !upper.ends_with("MPF")) continue;

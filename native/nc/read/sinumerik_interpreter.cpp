@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/path_text.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
 #include "nc/machine/machines.hpp"
@@ -52,7 +53,8 @@ void SinumerikInterpreter::take_options(const ReadOptions& options) {
   max_turns_ = taken.positive("max_turns").value_or(1e6);
   skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
   ignore_compensation_ = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
-  if (const std::string folder = taken.path("subroutines"); !folder.empty()) folders_.emplace_back(folder);
+  if (const std::string folder = taken.path("subroutines"); !folder.empty())
+    folders_.push_back(base::text_path(folder));
   units_given_ = taken.given("units");
   if (taken.word("units", {"mm", "inch"}, "mm") == "inch") basic_unit_ = unit_ = feed_unit_ = kInch;
   taken.done();

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/environment.hpp"
 #include "pen/service/http.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
@@ -50,14 +51,13 @@ bool HaplyLink::write(std::span<const std::uint8_t> bytes) noexcept {
 }
 
 std::uint16_t haply_port() {
-  const char* const given = std::getenv(kPortVariable);
-  if (given == nullptr || *given == '\0') return kPort;
-  const std::string_view text(given);
+  const std::string text = base::environment(kPortVariable).value_or("");
+  if (text.empty()) return kPort;
   std::uint16_t port = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
   if (error != std::errc() || end != text.data() + text.size() || port == 0)
     throw OpenError(OpenProblem::Other,
-                    std::string(kPortVariable) + " must be a port, 1 to 65535, not \"" + given + "\"");
+                    std::string(kPortVariable) + " must be a port, 1 to 65535, not \"" + text + "\"");
   return port;
 }
 

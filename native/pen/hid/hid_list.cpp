@@ -28,11 +28,17 @@ void append_utf8(std::string& out, std::uint32_t c) {
   }
 }
 
-/// Converts hidapi's wide strings, which are UTF-32 on Linux. Avoids the C library's functions, which depend on the
-/// locale.
+/// Converts hidapi's wide strings: UTF-32 on Linux, UTF-16 on Windows. Avoids the C library's functions, which depend
+/// on the locale.
 std::string to_utf8(const wchar_t* text) {
   std::string out;
-  for (; text != nullptr && *text != 0; ++text) append_utf8(out, static_cast<std::uint32_t>(*text));
+  for (; text != nullptr && *text != 0; ++text) {
+    auto c = static_cast<std::uint32_t>(*text);
+    const auto next = static_cast<std::uint32_t>(text[1]);
+    if (sizeof(wchar_t) == 2 && c >= 0xD800 && c < 0xDC00 && next >= 0xDC00 && next < 0xE000)
+      c = 0x10000 + ((c - 0xD800) << 10) + (next - 0xDC00), ++text;
+    append_utf8(out, c);
+  }
   return out;
 }
 

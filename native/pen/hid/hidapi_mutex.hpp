@@ -1,10 +1,10 @@
 // The mutex for hidapi.
 #pragma once
 
-#include <pthread.h>
-
 #include <mutex>
 #include <new>
+
+#include "base/forks.hpp"
 
 namespace riffler::pen {
 
@@ -13,7 +13,7 @@ namespace riffler::pen {
 inline std::mutex& hidapi_mutex() {
   static std::mutex mutex;
   // In a forked process, the thread that held it no longer exists to release it.
-  [[maybe_unused]] static const int free_in_forks = pthread_atfork(nullptr, nullptr, [] { new (&mutex) std::mutex; });
+  [[maybe_unused]] static const bool free_in_forks = (base::run_in_forks([] { new (&mutex) std::mutex; }), true);
   return mutex;
 }
 

@@ -48,7 +48,7 @@ class ArmProcess final : public Transport {
 
   const ArmTraits& traits() const { return traits_; }
   /// Identifier of the program, for tests.
-  pid_t process() const noexcept { return program_->id(); }
+  int process() const noexcept { return program_->id(); }
 
   int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
   bool write(std::span<const std::uint8_t> bytes) noexcept override;

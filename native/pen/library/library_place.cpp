@@ -1,12 +1,16 @@
 #include "pen/library/library_place.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
+
+#include "base/environment.hpp"
+#include "base/path_text.hpp"
 
 namespace riffler::pen {
 namespace {
@@ -17,8 +21,8 @@ constexpr const char* kFolders[] = {
 
 std::vector<std::string> library_folders() {
   std::vector<std::string> out;
-  const char* const given = std::getenv("LD_LIBRARY_PATH");
-  std::string_view rest = given == nullptr ? "" : given;
+  const std::string given = base::environment("LD_LIBRARY_PATH").value_or("");
+  std::string_view rest = given;
   while (!rest.empty()) {
     const std::string_view folder = rest.substr(0, rest.find(':'));
     if (folder.starts_with('/')) out.emplace_back(folder);
@@ -28,13 +32,18 @@ std::vector<std::string> library_folders() {
   return out;
 }
 
+bool readable(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(base::text_path(path), error) && std::ifstream(base::text_path(path)).good();
+}
+
 }  // namespace
 
 LibraryPlace find_library(const char* variable, std::initializer_list<const char*> names) {
-  if (const char* const given = std::getenv(variable); given != nullptr && *given != '\0') return {given, true};
+  if (const std::string given = base::environment(variable).value_or(""); !given.empty()) return {given, true};
   for (const std::string& folder : library_folders())
     for (const char* const name : names)
-      if (const std::string path = folder + "/" + name; ::access(path.c_str(), R_OK) == 0) return {path, false};
+      if (const std::string path = folder + "/" + name; readable(path)) return {path, false};
   return {};
 }
 

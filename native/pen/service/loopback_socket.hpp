@@ -12,7 +12,7 @@ class LoopbackSocket {
  public:
   /// Throws OpenError: NotRunning if no program listens at the port, NoAnswer if it does not accept within `seconds`.
   LoopbackSocket(std::uint16_t port, double seconds);
-  LoopbackSocket(LoopbackSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  LoopbackSocket(LoopbackSocket&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
   LoopbackSocket& operator=(LoopbackSocket&&) = delete;
   ~LoopbackSocket();
 
@@ -27,8 +27,8 @@ class LoopbackSocket {
   void finish(double seconds) noexcept;
 
  private:
-  bool wait(short events, double seconds) noexcept;
-  int fd_ = -1;
+  bool wait(bool to_write, double seconds) noexcept;
+  std::intptr_t socket_ = -1;
 };
 
 }  // namespace riffler::pen

@@ -3,15 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <thread>
 #include <vector>
+
+#include "support/set_environment.hpp"
 
 namespace riffler::base::parallel_test {
 namespace {
 
 TEST(Parallel, ACallWithinACallStaysOnItsThread) {
-  setenv("RIFFLER_THREADS", "4", 1);
+  const test::SetEnvironment threads("RIFFLER_THREADS", "4");
   std::atomic<int> elsewhere{0}, done{0};
   parallel_for(16, 1, [&](std::size_t, std::size_t) {
     const std::thread::id here = std::this_thread::get_id();
@@ -30,11 +31,10 @@ TEST(Parallel, ACallWithinACallStaysOnItsThread) {
   });
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < a; ++b) EXPECT_NE(ids[a], ids[b]);
-  unsetenv("RIFFLER_THREADS");
 }
 
 TEST(Parallel, TheLastReportedShareIsOneEvenIfHelpersFinishTheWork) {
-  setenv("RIFFLER_THREADS", "2", 1);
+  const test::SetEnvironment threads("RIFFLER_THREADS", "2");
   constexpr int kChunks = 64;
   for (const bool cancel : {false, true}) {
     std::atomic<int> done{0};
@@ -57,11 +57,10 @@ TEST(Parallel, TheLastReportedShareIsOneEvenIfHelpersFinishTheWork) {
     EXPECT_LT(shares[0], 0.1);
     EXPECT_EQ(shares[1], 1);
   }
-  unsetenv("RIFFLER_THREADS");
 }
 
 TEST(Parallel, ALongBodySeesThatItsCallIsCancelled) {
-  setenv("RIFFLER_THREADS", "2", 1);
+  const test::SetEnvironment threads("RIFFLER_THREADS", "2");
   still_wanted();  // outside of any call
   const auto for_ever = [](std::size_t, std::size_t) {
     while (true) still_wanted();
@@ -76,7 +75,6 @@ TEST(Parallel, ALongBodySeesThatItsCallIsCancelled) {
                               parallel_for(1, 1, for_ever);
                             }),
                std::runtime_error);
-  unsetenv("RIFFLER_THREADS");
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include <functional>
 
 #include "base/own_thread.hpp"
+#include "base/posix/overrun_guard.hpp"
+#include "base/posix/system_bus.hpp"
 #include "support/fake_rtkit.hpp"
 
 namespace riffler::base::real_time_test {

@@ -85,7 +85,7 @@ def test_a_flat_end_finishes_level_faces_in_every_pattern(pattern):
 def test_a_row_that_ends_at_a_riser_ends_on_its_own_face():
     """Where the part lies on the grid of places decides where rows end; they did so between both faces."""
     part = steps()
-    moved = riffler.Mesh(np.array(part.vertices) + [0.26018, -0.40367, 0.0], part.triangles)
+    moved = riffler.Mesh(np.add(part.vertices, [0.26018, -0.40367, 0.0]), part.triangles)
     op = finished(moved, FLAT, "scallop", degrees(0, 5))
     cuts = op.poses[op.kind == 2][:, 2]
     assert np.abs(cuts[:, None] - [3, 7, 10]).min(axis=1).max() <= TOLERANCE

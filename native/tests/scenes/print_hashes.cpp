@@ -12,5 +12,5 @@ int main(int argc, char** argv) {
     if (entry.path().extension() == ".rjournal") journals.push_back(entry.path());
   std::sort(journals.begin(), journals.end());
   for (const auto& path : journals)
-    std::puts(riffler::scenes::describe(path.stem(), riffler::scenes::replay(path)).c_str());
+    std::puts(riffler::scenes::describe(path.stem().string(), riffler::scenes::replay(path)).c_str());
 }

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "base/dbus_message.hpp"
-#include "base/overrun_guard.hpp"
+#include "base/posix/overrun_guard.hpp"
 
 namespace riffler::test {
 

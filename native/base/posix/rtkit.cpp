@@ -1,4 +1,4 @@
-#include "base/rtkit.hpp"
+#include "base/posix/rtkit.hpp"
 
 #include <utility>
 

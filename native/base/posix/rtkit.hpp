@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "base/system_bus.hpp"
+#include "base/posix/system_bus.hpp"
 
 namespace riffler::base {
 

@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <cstring>
 #include <optional>
-#include <random>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "base/draft_names.hpp"
+#include "base/path_text.hpp"
 
 namespace riffler::base {
 
@@ -21,24 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw std::runtime_error(path.filename().string() + ": " + what);
+  throw std::runtime_error(file_name(path) + ": " + what);
 }
 
 [[noreturn]] void fail_system(const fs::path& path, const char* what) {
   fail(path, std::string(what) + ": " + std::strerror(errno));
-}
-
-/// Resolves links; their target need not exist.
-fs::path followed(const fs::path& path) {
-  constexpr int kMaxLinks = 40;  // the limit of Linux
-  fs::path at = path;
-  std::error_code error;
-  for (int k = 0; fs::is_symlink(fs::symlink_status(at, error)); ++k) {
-    const fs::path to = fs::read_symlink(at, error);
-    if (error || k == kMaxLinks) fail(path, "a link that leads nowhere");
-    at = to.is_absolute() ? to : at.parent_path() / to;
-  }
-  return at;
 }
 
 /// Status of an existing regular file; nothing if there is no file.
@@ -66,18 +55,6 @@ void take_over(int fd, const struct stat& old, const fs::path& path) {
   if (fchmod(fd, mode) != 0) fail_system(path, "its permissions cannot be kept");
 }
 
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
-std::string random_name(const fs::path& path) {
-  static const char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
-  std::random_device random;
-  std::string name = draft_prefix(path).string();
-  for (int k = 0; k < 12; ++k) name += kLetters[random() % (sizeof kLetters - 1)];
-  return name;
-}
-
 bool locked(int fd) {
   return flock(fd, LOCK_EX | LOCK_NB) == 0;
 }
@@ -86,7 +63,7 @@ bool locked(int fd) {
 std::string linked(int fd, const fs::path& target) {
   const std::string open_file = "/proc/self/fd/" + std::to_string(fd);
   while (true) {
-    std::string name = random_name(target);
+    std::string name = random_draft(target).native();
     if (linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return name;
     if (errno != EEXIST) fail_system(target, "cannot be written");
   }
@@ -116,7 +93,7 @@ void AtomicFileWriter::open_draft() {
   }
   clear_drafts(target_);
   while (fd_ < 0) {
-    draft_ = random_name(target_);
+    draft_ = random_draft(target_).native();
     fd_ = open(draft_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_RDWR | O_CLOEXEC, 0666);
     if (fd_ < 0 && errno == EEXIST) continue;
     if (fd_ < 0) {
@@ -180,18 +157,11 @@ void replace_file(const fs::path& draft, const fs::path& path) {
   if (std::rename(draft.c_str(), target.c_str()) != 0) fail_system(target, "cannot be replaced");
 }
 
-fs::path draft_prefix(const fs::path& path) {
-  constexpr std::size_t kLongest = 200;  // of a name, whose limit is 255 bytes
-  std::string name(1, '.');
-  name.append(path.filename().string(), 0, kLongest).append(".riffler-");
-  return folder_of(path) / name;
-}
-
 void clear_drafts(const fs::path& path) noexcept try {
-  const std::string begin = draft_prefix(path).filename().string();
+  const std::string begin = file_name(draft_prefix(path));
   std::error_code error;
   for (fs::directory_iterator at(folder_of(path), error), end; !error && at != end; at.increment(error)) {
-    if (!at->path().filename().string().starts_with(begin)) continue;
+    if (!file_name(at->path()).starts_with(begin)) continue;
     const int fd = open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) continue;
     if (locked(fd)) {

@@ -7,9 +7,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
 
-#include "base/rtkit.hpp"
+#include "base/posix/overrun_guard.hpp"
+#include "base/posix/rtkit.hpp"
+#include "base/posix/system_bus.hpp"
 
 namespace riffler::base {
 
@@ -47,20 +50,22 @@ std::pair<int, int> ask_system(int wanted) {
 
 }  // namespace
 
-PriorityReport::PriorityReport() : priority_{0, ThreadPriority::By::Nobody, "normal: real time was not asked for"} {}
+class RealTimeScope::Grant {
+ public:
+  Grant(PriorityReport& report, const RealTimeSettings& settings);
+  ~Grant();
+  void wait();
 
-ThreadPriority PriorityReport::get() const {
-  if (overran_) return refused("the thread ran too long without a pause, and the guard took its priority away", "");
-  const std::lock_guard lock(mutex_);
-  return priority_;
-}
+ private:
+  void ask_rtkit(int thread, const RealTimeSettings& settings) noexcept;
 
-void PriorityReport::set(ThreadPriority priority) {
-  const std::lock_guard lock(mutex_);
-  priority_ = std::move(priority);
-}
+  PriorityReport& report_;
+  OverrunGuard guard_;
+  std::unique_ptr<BusCancel> cancel_;
+  std::thread asker_;
+};
 
-RealTimeScope::RealTimeScope(PriorityReport& report, const RealTimeSettings& settings)
+RealTimeScope::Grant::Grant(PriorityReport& report, const RealTimeSettings& settings)
     : report_(report), guard_(report.overran(), settings.guard) {
   const char* const wanted = std::getenv("RIFFLER_REAL_TIME");
   if (wanted != nullptr && std::strcmp(wanted, "0") == 0) {
@@ -85,17 +90,17 @@ RealTimeScope::RealTimeScope(PriorityReport& report, const RealTimeSettings& set
   }
 }
 
-RealTimeScope::~RealTimeScope() {
+RealTimeScope::Grant::~Grant() {
   if (cancel_) cancel_->cancel();
   wait();
   if (guard_.guards()) schedule_thread(0, 0);
 }
 
-void RealTimeScope::wait() {
+void RealTimeScope::Grant::wait() {
   if (asker_.joinable()) asker_.join();
 }
 
-void RealTimeScope::ask_rtkit(pid_t thread, const RealTimeSettings& settings) noexcept {
+void RealTimeScope::Grant::ask_rtkit(int thread, const RealTimeSettings& settings) noexcept {
   try {
     Rtkit rtkit(settings.bus.empty() ? system_bus_address() : settings.bus, settings.answer, *cancel_);
     const RtkitLimits limits = rtkit.limits();
@@ -107,6 +112,15 @@ void RealTimeScope::ask_rtkit(pid_t thread, const RealTimeSettings& settings) no
   } catch (const std::exception& error) {
     report_.set(refused(std::string("the system refuses real time; ") + error.what()));
   }
+}
+
+RealTimeScope::RealTimeScope(PriorityReport& report, const RealTimeSettings& settings)
+    : grant_(std::make_unique<Grant>(report, settings)) {}
+
+RealTimeScope::~RealTimeScope() = default;
+
+void RealTimeScope::wait() {
+  grant_->wait();
 }
 
 ThreadPriority probe_real_time(const RealTimeSettings& settings) {

@@ -1,4 +1,4 @@
-#include "base/system_bus.hpp"
+#include "base/posix/system_bus.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -40,7 +40,7 @@ std::string socket_name(std::string_view address) {
       const std::string_view key = keys.substr(0, keys.find(','));
       keys.remove_prefix(std::min(key.size() + 1, keys.size()));
       if (key.starts_with("path=")) return std::string(key.substr(5));
-      if (key.starts_with("abstract=")) return std::string(1, '\0') + std::string(key.substr(9));
+      if (key.starts_with("abstract=")) return std::string(1, '\0').append(key.substr(9));
     }
   }
   return {};

@@ -1,4 +1,4 @@
-#include "base/overrun_guard.hpp"
+#include "base/posix/overrun_guard.hpp"
 
 #include <pthread.h>
 #include <sched.h>

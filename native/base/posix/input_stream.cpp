@@ -2,10 +2,19 @@
 
 #include <sys/types.h>
 
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "base/path_text.hpp"
+#include "riffler/base/error.hpp"
+
 namespace riffler::base {
 
 InputStream open_input(const std::filesystem::path& path) {
-  return InputStream(std::fopen(path.c_str(), "rb"));
+  InputStream out(std::fopen(path.c_str(), "rb"));
+  if (!out) throw FormatError(file_name(path), "", std::string("cannot be opened: ") + std::strerror(errno));
+  return out;
 }
 
 bool seek_input(std::FILE* file, std::uint64_t at) {
