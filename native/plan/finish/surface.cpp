@@ -210,7 +210,7 @@ bool FinishSurface::rolls(const SurfacePoint& p) const {
 }
 
 /// The row's end between a selected point `in` and another point `out`, within the tolerance. At a riser the line
-/// between both is far from the surface, so the end gets the surface's own height there, if the way to it is free.
+/// between both is far from the surface, so the end gets the surface's own height there, if the move to it is free.
 Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) const {
   double low = 0, high = 1;
   const double length = glm::length(out.tip - in.tip);
