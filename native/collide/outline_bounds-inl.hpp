@@ -262,6 +262,14 @@ class RunBound {
       return end.open ? hn::Le(past(end, at_), zero()) : hn::Le(zero(), zero());
     };
     plane.use_corner(both(before(run.lower), before(run.upper)));
+    // Below or above the whole solid its disc is a plane, too. The tangents at the ends of a shank that is thinner than
+    // the cutter lead through the cutter, so they say nothing about points at its tip. A little less than the distance,
+    // because another run that ends at this disc, at the same depth below it, continues behind it (LeastOfRuns).
+    const auto add_disc = [&](V beyond, double up) {
+      plane.add_plane(pick(hn::Ge(beyond, reach_), sub(beyond, set(kBeforeDisc)), set(-kInfinity)), zero(), set(up),
+                      zero());
+    };
+    add_disc(sub(set(run.lower.point.y), at_.z), -1), add_disc(sub(at_.z, set(run.upper.point.y)), 1);
     return plane;
   }
 
@@ -330,6 +338,8 @@ class RunBound {
   }
 
  private:
+  static constexpr double kBeforeDisc = 1e-9;  // mm
+
   static HWY_INLINE V in_space(V out, V radial, V up, double axis) { return add(mul(out, radial), mul(up, set(axis))); }
 
   /// Whether a triangle lies behind the end of a run, from its corners alone: as TriangleSearch::in_sector.

@@ -62,6 +62,19 @@ TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewSteps) {
   EXPECT_EQ(turned.answer, Answer::Clear);
 }
 
+TEST(SweptSearch, SlidesInAFewStepsUnderAShankThatIsThinnerThanTheCutter) {
+  // The tangents at the end of such a shank lead through the cutter's tip.
+  const Collider plate(mesh::box_mesh({-60, -30, -5}, {60, 30, 0}));
+  const Assembly tool(cutters::ball(6, 10).with_shank({{10, 2.5, 16, 2.5}}).with_holder({{16, 8, 50, 8}}));
+  for (const double tilt : {0.0, 0.1, 0.5}) {
+    const Vec3 axis(0, std::sin(tilt), std::cos(tilt)), centre(0, 0, 3);
+    const Motion along({centre - Vec3(15, 0, 0) - 3.0 * axis, axis}, {centre + Vec3(15, 0, 0) - 3.0 * axis, axis});
+    const Swept check = plate.sweep(tool, along, -0.01, 100000);
+    EXPECT_EQ(check.answer, Answer::Clear) << tilt;
+    EXPECT_LT(check.evaluations, 1000U) << tilt;
+  }
+}
+
 TEST(SweptSearch, EndsOnTrianglesThatAreSinglePoints) {
   // Their spheres have no size, which the drift exceeds in any stretch.
   Mesh points = mesh::box_mesh({-30, -30, -20}, {30, 30, -10});
