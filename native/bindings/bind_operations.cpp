@@ -7,6 +7,7 @@
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "riffler/plan/cc_frame.hpp"
+#include "riffler/plan/cut_along.hpp"
 #include "riffler/plan/finish.hpp"
 #include "riffler/plan/outline.hpp"
 #include "riffler/plan/rough.hpp"
@@ -92,6 +93,25 @@ Planned planned(plan::OutlineResult&& found) {
           {}};
 }
 
+Planned planned(plan::CutAlongResult&& found) {
+  return {std::move(found), {{"pieces", found.pieces}, {"retracts", found.retracts}, {"lifted", found.lifted}}, {}, {}};
+}
+
+/// A rule of riffler.plan.axis_rules: kind, lead and tilt, target, and limits.
+std::optional<plan::AxisRule> to_rule(const std::optional<std::string>& kind, double lead, double tilt,
+                                      const ArrayLike& target, double max_tilt, double max_turn) {
+  using Kind = plan::AxisRule::Kind;
+  if (!kind) return {};
+  plan::AxisRule rule;
+  rule.kind = *kind == "towards"      ? Kind::Towards
+              : *kind == "away"       ? Kind::Away
+              : *kind == "least_tilt" ? Kind::LeastTilt
+                                      : Kind::Lean;
+  rule.lean = {lead, tilt}, rule.target = to_vec3s(py::cast<Doubles>(target), "orientation");
+  rule.max_tilt = max_tilt, rule.max_turn = max_turn;
+  return rule;
+}
+
 /// Plans with plan(scene, progress), and carves a copy of the stock with what comes of it.
 template <class Plan>
 auto operation(const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures,
@@ -123,9 +143,11 @@ void bind_operations(py::module_& m) {
          const Tool& tool, const ArrayLike& axis, double clearance, const std::string& pattern, double cusp,
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          const std::vector<int>& faces, const std::optional<ArrayLike>& centre, bool climb, double feed, double plunge,
-         std::optional<double> lead, const ProgressLike& progress) {
+         std::optional<double> lead, const std::optional<std::string>& rule, double ahead, double aside,
+         const ArrayLike& target, double max_tilt, double max_turn, const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
         plan::FinishOptions options;
+        options.axes = to_rule(rule, ahead, aside, target, max_tilt, max_turn);
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
         options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
@@ -138,7 +160,8 @@ void bind_operations(py::module_& m) {
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
       "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "faces"_a,
-      "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "progress"_a, "For riffler.plan.finish.");
+      "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "rule"_a, "ahead"_a, "aside"_a, "target"_a, "max_tilt"_a,
+      "max_turn"_a, "progress"_a, "For riffler.plan.finish.");
   m.def(
       "rough",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
@@ -185,6 +208,23 @@ void bind_operations(py::module_& m) {
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "curves"_a,
       "inside"_a, "depth"_a, "stepdown"_a, "tabs"_a, "tab_height"_a, "tab_width"_a, "allowance"_a, "tolerance"_a,
       "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "progress"_a, "For riffler.plan.outline.");
+  m.def(
+      "cut_along",
+      [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
+         const Tool& tool, const ArrayLike& axis, double clearance, const ArraysLike& lines, double distance,
+         double tolerance, double max_lift, double feed, double plunge, const ProgressLike& progress) {
+        tool.require_revolved("operations");
+        const plan::CutAlongOptions options{distance, tolerance, max_lift, feed, plunge};
+        std::vector<plan::CutLine> cuts;
+        for (const py::handle line : lines)
+          cuts.push_back({to_poses(py::cast<Doubles>(line), ("lines[" + std::to_string(cuts.size()) + "]").c_str())});
+        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+                         [=](const plan::SetupScene& scene, const Progress& listener) {
+                           return plan::cut_along(scene, tool, cuts, options, listener);
+                         });
+      },
+      "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "lines"_a,
+      "distance"_a, "tolerance"_a, "max_lift"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.along_poses.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

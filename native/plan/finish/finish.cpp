@@ -10,11 +10,14 @@
 #include "geom/math.hpp"
 #include "plan/finish/leads.hpp"
 #include "plan/finish/order.hpp"
+#include "plan/finish/oriented.hpp"
 #include "plan/finish/patterns.hpp"
 #include "plan/operation_moves.hpp"
+#include "plan/row_axes.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 #include "riffler/mesh/orient.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::plan {
 
@@ -144,20 +147,31 @@ std::string why_empty(const PatternRows& rows, const FinishOptions& options) {
   return "no face of the part that the tool touches is as steep as slopes asks";
 }
 
+/// The tool whose rows are found: the ball at the tip alone if axes change, because tilting may clear all else.
+Tool tool_of_rows(const Tool& tool, const FinishOptions& options) {
+  if (!options.axes) return tool;
+  validate(*options.axes);
+  const double radius = ball_for_rows(tool);
+  return cutters::ball(2 * radius, std::max(tool.length(), 2 * radius));
+}
+
 }  // namespace
 
-FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptions& options, const Progress& progress) {
+FinishResult finish(const SetupScene& scene, const Tool& given, const FinishOptions& options,
+                    const Progress& progress) {
   const Pattern& pattern = pattern_named(options.pattern);
+  const Tool tool = tool_of_rows(given, options);
   check(options, tool);
   const TurnedScene turned_scene = turned(scene, options.angle);
   const Mat3& frame = turned_scene.frame;
   const Mesh& part = turned_scene.part;
   const FinishSurface surface(part, turned_scene.fixtures, tool, options, region_in(options.region, frame));
   const CutterProfile profile(tool);
+  const double found = options.axes ? 0.4 : 0.8;  // share of the progress
   std::optional<Vec2> centre;
   if (options.centre) centre = Vec2(*options.centre * frame);
   PatternRows rows =
-      pattern.rows({surface, profile, tool, options, mesh::bounds(part), centre}, base::part(progress, 0, 0.8));
+      pattern.rows({surface, profile, tool, options, mesh::bounds(part), centre}, base::part(progress, 0, found));
   FinishResult out;
   out.blocked = rows.blocked, out.rows = rows.rows, out.added = rows.added;
   for (BlockedPlace& one : out.blocked) one.place = frame * one.place;
@@ -169,9 +183,14 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
   const double longest = std::max(kDirectSpacings * rows.spacing, profile.radius());
   const std::vector<CutPiece> pieces =
       rows.descending ? descending(std::move(rows.pieces), longest) : in_short_order(std::move(rows.pieces));
-  const Progress linking = base::part(progress, 0.8, 0.9);
+  const Progress linking = base::part(progress, found, found + 0.1);
   const auto links =
       rows.descending ? straight_links(pieces, surface, longest) : direct_links(pieces, surface, longest, linking);
+  if (options.axes) {
+    cut_oriented(scene, given, options, frame, pieces, links, base::part(progress, found + 0.1, 1), out);
+    out.drops = surface.drops();
+    return out;
+  }
   const Mesh left = turned_stock(scene, frame);
   std::optional<DropCutter> stock;
   if (!left.empty()) stock.emplace(left, tool);

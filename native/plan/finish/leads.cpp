@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/lead_arc.hpp"
-#include "riffler/tool/cutters.hpp"
+#include "plan/pose_leads.hpp"
 
 namespace riffler::plan {
 
 namespace {
 
-constexpr double kPin = 0.01;           // mm, smallest radius of the lower end of a shank
 constexpr double kLeastTurn = kPi / 6;  // an arc from straight above a steep row turns less than a quarter
 constexpr double kLongestTurn = 0.75 * kPi;
 
@@ -22,22 +20,6 @@ std::optional<Vec3> direction(const std::vector<Vec3>& tips, double least) {
   for (const Vec3& tip : tips)
     if (const Vec3 way = tip - tips.front(); glm::length(way) > least) return glm::normalize(way);
   return {};
-}
-
-/// The pieces of shank and holder as a tool whose tip is the lower end of the lowest piece, and the height of that end;
-/// none if there are no pieces.
-std::optional<std::pair<Tool, double>> body_of(const Tool& tool) {
-  std::vector<tool::Frustum> shank = tool.shank(), holder = tool.holder();
-  const tool::Frustum* lowest = nullptr;
-  for (const std::vector<tool::Frustum>* pieces : {&shank, &holder})
-    for (const tool::Frustum& piece : *pieces)
-      if (!lowest || piece.z0 < lowest->z0) lowest = &piece;
-  if (!lowest) return {};
-  const tool::Frustum first = *lowest;
-  for (std::vector<tool::Frustum>* pieces : {&shank, &holder})
-    for (tool::Frustum& piece : *pieces) piece.z0 -= first.z0, piece.z1 -= first.z0;
-  const Tool end = cutters::flat(2 * std::max(kPin, std::min(first.r0, first.r1)), first.z1 - first.z0);
-  return std::pair(end.with_shank(shank).with_holder(holder), first.z0);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Brushed', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'falloff', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'outline', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'rough', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Brushed', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cut_along', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'falloff', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'outline', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'rough', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file with invalid content. Names the file, the line or byte, and what was expected.
@@ -6631,6 +6631,10 @@ def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: numpy.typing.ArrayLike | None) -> numpy.typing.NDArray[numpy.float64]:
     ...
+def cut_along(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, lines: collections.abc.Iterable[numpy.typing.ArrayLike], distance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+    """
+    For riffler.plan.along_poses.
+    """
 @typing.overload
 def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.locations.LocationReport]:
     ...
@@ -6663,7 +6667,7 @@ def falloff(name: str, t: typing.SupportsFloat) -> float:
     >>> riffler.falloff("smooth", 0.5), riffler.falloff("linear", 0.25)
     (0.5, 0.75)
     """
-def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], faces: collections.abc.Sequence[typing.SupportsInt], centre: numpy.typing.ArrayLike | None, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, lead: typing.SupportsFloat | None, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], faces: collections.abc.Sequence[typing.SupportsInt], centre: numpy.typing.ArrayLike | None, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, lead: typing.SupportsFloat | None, rule: str | None, ahead: typing.SupportsFloat, aside: typing.SupportsFloat, target: numpy.typing.ArrayLike, max_tilt: typing.SupportsFloat, max_turn: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
     """
     For riffler.plan.finish.
     """

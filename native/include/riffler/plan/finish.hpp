@@ -1,4 +1,4 @@
-// Finishing in three axes: rows on a part's offset surface, with the links between them, as one operation.
+// Finishing: rows on a part's offset surface, with the links between them, as one operation.
 #pragma once
 
 #include <optional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "riffler/base/progress.hpp"
+#include "riffler/plan/axis_rule.hpp"
 #include "riffler/plan/operation.hpp"
 #include "riffler/tool/tool.hpp"
 
@@ -25,8 +26,9 @@ struct FinishOptions {
   bool climb = true;                        ///< waterline: whether the part lies to the motion's right
   double feed = 1000;                       ///< feed of cuts and links, mm/min
   double plunge = 300;                      ///< feed of leads, mm/min
-  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0 makes no arcs; without a
-                                 ///< value, half the cutter's radius
+  std::optional<double> lead{};    ///< radius of the arcs into cuts and out of them, mm; 0 makes no arcs; without a
+                                   ///< value, half the cutter's radius
+  std::optional<AxisRule> axes{};  ///< of axes that change along the rows; none: all along the set-up's
 };
 
 /// The operation, and counts.
@@ -41,7 +43,9 @@ std::vector<std::string> finish_patterns();
 
 /// Plans one operation. Rows are curves of the exact drop surface of the whole tool over part and fixtures: no point of
 /// a cut or link is more than `tolerance` below it, by a bound (DropCutter::rise). Rows end where the tool leaves the
-/// part: a wall without a floor next to it needs an outline instead. Throws std::invalid_argument naming the option,
+/// part: a wall without a floor next to it needs an outline instead. With the option `axes`, rows are those of the ball
+/// at the tool's tip, whose centre follows them while the axis turns (cut_along.hpp); the tool's leads are then
+/// straight. Throws std::invalid_argument naming the option,
 /// and for a cutter that stands on its side or has an undercut as its widest place.
 FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptions& options,
                     const Progress& progress = {});

@@ -9,6 +9,7 @@ from .analysis import PartReport, analyse
 from .around import fixture_pitch, with_room
 from .curves import read_curves
 from .drilling import drill
+from .engraving import engrave_operation
 from .file import Texts, dumps, load, loads, save
 from .finishing import PATTERNS, finish
 from .locations import (
@@ -39,6 +40,7 @@ from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
 from .strategies.pencil import PencilPaths, PencilStats, pencil
 from .strategies.swarf import Swarf, swarf
+from .swarfing import swarf_operation
 
 __all__ = [
     "PATTERNS",
@@ -76,6 +78,7 @@ __all__ = [
     "drop",
     "dumps",
     "engrave",
+    "engrave_operation",
     "find",
     "finish",
     "fixture_pitch",
@@ -100,6 +103,7 @@ __all__ = [
     "rough",
     "save",
     "swarf",
+    "swarf_operation",
     "with_room",
 ]
 

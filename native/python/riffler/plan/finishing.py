@@ -1,8 +1,8 @@
-"""Finishing: rows on the part's offset surface, along one tool axis."""
+"""Finishing: rows on the part's offset surface, along one tool axis or along axes that follow a rule."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import pi
 
 import numpy as np
@@ -12,6 +12,7 @@ from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
+from .axis_rules import MAX_TILT, MAX_TURN, axis_rule, require_rotary, rule_arguments
 from .operations import Operation, OperationReport, PlannedMoves, operation_of
 from .rest import rest_region
 from .setups import Setup
@@ -35,7 +36,9 @@ def finish(
     reference_tool: Tool | None = None,
     centre: ArrayLike | None = None,
     climb: bool = True,
-    orientation: ArrayLike | None = None,
+    orientation: ArrayLike | str | Mapping[str, ArrayLike] | None = None,
+    max_tilt: float = MAX_TILT,
+    max_turn: float = MAX_TURN,
     feed: float = 1000.0,
     plunge: float | None = None,
     lead: float | None = None,
@@ -81,15 +84,25 @@ def finish(
         Centre of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
     climb : bool
         Whether "waterline" moves with the part on the right. Other patterns begin each row at its nearer end.
-    orientation : array_like, shape (3,), optional
-        Unit vector from tip to spindle; by default the set-up's axis. Needs a machine with rotary axes.
+    orientation : array_like, str or dict, optional
+        By default the set-up's axis. A unit vector (3,) from tip to spindle; or a rule for axes that change along the
+        rows: "normal", the part's normal at the contact; (lead, tilt), rad by which the axis leans from the normal
+        forward and to the left; ``{"towards": p}`` and ``{"away": p}``, where p is a point (3,) or a curve (k, 3) of
+        which the nearest point counts; "least_tilt", the axis nearest to the set-up's along which the tool is free of
+        part and fixtures. All need a machine with rotary axes; a rule also needs a cutter with a ball at its tip, and
+        leaves out places where the tool is not free.
+    max_tilt : float
+        Largest angle between the axes of a rule and the set-up's axis, rad, at most 80°. Others are moved there.
+    max_turn : float
+        Largest change of the axes of a rule along the rows, rad per mm of the ball's path.
     feed : float
         Feed of cuts and links, mm/min.
     plunge : float, optional
         Feed of leads, mm/min; by default a third of ``feed``.
     lead : float, optional
         Radius of the arcs on which the tool enters and leaves cuts, mm; 0: no arcs. By default half the cutter's
-        radius. ``report.stats`` counts ``arcs``, and leads that are ``straight`` because no arc fits.
+        radius. ``report.stats`` counts ``arcs``, and leads that are ``straight`` because no arc fits. With a rule for
+        axes, all are straight.
     spindle : float
         Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
@@ -113,7 +126,11 @@ def finish(
     >>> op.poses.shape[1], op.reason, op.report.air_mm < op.report.cut_mm
     (6, '', True)
     """
-    setup = setup.along(orientation)
+    rule = axis_rule(orientation)
+    if rule is None:
+        setup = setup.along(orientation)  # type: ignore[arg-type]
+    else:
+        require_rotary(setup)
     low, high = (float(x) for x in slopes)
     curves, faces = _region_of(region, len(setup.part.triangles))
     if rest is None and reference_tool is not None:
@@ -147,6 +164,7 @@ def finish(
         feed=feed,
         plunge=feed / 3 if plunge is None else plunge,
         lead=lead,
+        **rule_arguments(rule, max_tilt, max_turn),
         progress=progress,
     )
 

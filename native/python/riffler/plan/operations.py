@@ -84,6 +84,8 @@ class Operation:
         rev/min.
     tolerance : float
         mm by which cuts may enter part + allowance.
+    engraved : float
+        mm by which cuts are meant to enter the part; 0 for all but engraving.
     """
 
     poses: NDArray[np.float64]
@@ -94,6 +96,7 @@ class Operation:
     reason: str = ""
     spindle: float = 0.0
     tolerance: float = 0.01
+    engraved: float = 0.0
 
     def __len__(self) -> int:
         return len(self.poses)

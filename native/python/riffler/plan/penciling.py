@@ -11,12 +11,13 @@ from .._core import Collider, Tool
 from ..arguments import Progress
 from ..hints import hinted
 from .locations import cutter_locations
-from .operations import CUT, Blocked, Operation
+from .operations import Blocked, Operation
 from .path_order import order_paths
+from .posed import along_poses
 from .rest import inside, rest_region
 from .setups import Setup
 from .strategies.pencil import pencil
-from .upright import ABOVE, Moves, joined, stock_tops
+from .upright import joined
 
 
 @hinted("plan.pencil_operation")
@@ -37,7 +38,9 @@ def pencil_operation(
 
     The paths are those of `pencil`. Where cutter, shank or holder would touch part or fixtures, the tool is lifted; a
     bound over each move proves that it is then clear. Left out, and listed in ``report.blocked``, are places that no
-    lift frees, and places where the lift is larger than the cutter's radius, as in valleys on the other side.
+    lift frees, and places where the lift is larger than the cutter's radius, as in valleys on the other side. Leads and
+    retracts are proven clear in the same way: where the tool cannot come down along its axis, as under an overhang, it
+    comes from the side, or the cut begins elsewhere; a cut that no lead reaches is left out and listed, too.
 
     Parameters
     ----------
@@ -82,12 +85,8 @@ def pencil_operation(
     (1, True)
     """
     setup = setup.along(orientation)
-    for name, value in (("feed", feed), ("plunge", plunge)):
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} must be positive and finite, not {value}")
     curves = None if rest is None else rest_region(setup, tool, rest)
     found = pencil(setup.part, tool, tolerance=tolerance, progress=progress, **options)
-    moves = Moves(setup, feed, feed / 3 if plunge is None else plunge)
     collider = Collider(joined([setup.part, *setup.obstacles])) if len(found) else None
     blocked, cuts = [], []
     for index, backwards in order_paths(found):
@@ -107,14 +106,19 @@ def pencil_operation(
         ends = sorted({one.row + 1 for one in report.unsafe} | set(gaps) | set(np.flatnonzero(np.diff(wanted)) + 1))
         pieces = [piece for piece in np.split(np.arange(len(cl)), ends) if len(piece) > 1 and wanted[piece[0]]]
         cuts += [cl[piece[::-1]] for piece in pieces[::-1]] if backwards else [cl[piece] for piece in pieces]
-    tops = stock_tops(setup, tool, np.array([cut[0, :3] for cut in cuts]).reshape(-1, 3))
-    for cut, top in zip(cuts, tops, strict=True):
-        moves.approach(cut[0, :3], (top if np.isfinite(top) else -np.inf) + ABOVE)
-        for pose in cut[1:]:
-            moves.to(pose[:3], CUT)
-        moves.retract()
     reason = found.reason or (blocked[0].reason if blocked else "there is no valley")
     if rest is not None and found and not blocked:
         reason = f"no valley has more than {rest:g} mm of material"
-    stats = {"paths": len(found), "pieces": len(cuts), "retracts": max(0, len(cuts) - 1)}
-    return moves.operation(tool, blocked, reason, stats, spindle, tolerance)
+    return along_poses(
+        setup,
+        tool,
+        cuts,
+        tolerance=tolerance,
+        max_lift=tolerance,
+        feed=feed,
+        plunge=plunge,
+        spindle=spindle,
+        blocked=blocked,
+        reason="" if cuts else reason,
+        stats={"paths": len(found)},
+    )

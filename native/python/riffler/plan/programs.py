@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .._core import Program, Tool
+from .._core import Finding, Program, Tool
 from ..arguments import Progress
 from ..hints import hinted
 from .operations import RAPID, Operation
@@ -105,8 +105,9 @@ def program(
         gouge_tolerance=tolerance + ROUNDING,
         progress=progress,
     )
-    if report.findings:
-        first = report.findings[0]
+    findings = [found for found in report.findings if not _meant(found, parts, planned, tolerance)]
+    if findings:
+        first = findings[0]
         at = ", ".join(f"{x:.3f}" for x in first.point)
         raise ValueError(f"{_place(parts, first.row)}, at ({at}): {first.message}")
     return Program(poses - np.concatenate([setup.origin, np.zeros(3)]), feed, **rest)
@@ -164,14 +165,28 @@ def _ball_around(setup: Setup) -> tuple[NDArray[np.float64], float]:
     return centre, float(np.linalg.norm(points - centre, axis=1).max())
 
 
-def _place(parts: Sequence[_Rows], row: int) -> str:
-    """The operation and the row in it of a row of the program."""
+def _meant(found: Finding, parts: Sequence[_Rows], planned: Sequence[Operation], tolerance: float) -> bool:
+    """Whether a finding is the depth of engraving, in rows of operations that engrave."""
+    if found.kind != "gouge":
+        return False
+    ops = [planned[_part_of(parts, row)[0].before] for row in (found.row, found.last_row)]
+    return found.value <= tolerance + min(op.engraved for op in ops) + ROUNDING
+
+
+def _part_of(parts: Sequence[_Rows], row: int) -> tuple[_Rows, int]:
+    """The part of a program that has a row, and the row's number in it."""
     for part in parts:
         if row < len(part.poses):
-            turn = ", the turn after it" if part.turn else ""
-            return f"operations[{part.before}]{turn}, row {row}"
+            return part, row
         row -= len(part.poses)
     raise AssertionError("a row beyond the program")
+
+
+def _place(parts: Sequence[_Rows], row: int) -> str:
+    """The operation and the row in it of a row of the program."""
+    part, row = _part_of(parts, row)
+    turn = ", the turn after it" if part.turn else ""
+    return f"operations[{part.before}]{turn}, row {row}"
 
 
 def _called(planned: Sequence[Operation], numbers: Sequence[int] | None, tools: dict[int, Tool]) -> list[int]:

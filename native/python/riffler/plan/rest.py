@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from .._core import Tool, Volume
 from ..hints import hinted
+from .axis_rules import rule_arguments
 from .locations import drop
 from .setups import Setup
 
@@ -216,6 +217,7 @@ def _left_by(tool: Tool, setup: Setup, above: float, allowance: float) -> Volume
         feed=1.0,
         plunge=1.0,
         lead=0.0,
+        **rule_arguments(None),
         progress=None,
     )
     if len(done.poses):

@@ -123,8 +123,8 @@ class Setup:
             return self
         if isinstance(orientation, (str, dict)) or np.shape(orientation) != (3,):
             raise ValueError(
-                f"orientation must be a direction, three numbers from tip to spindle, not {orientation!r}; axes that "
-                "change along a path are planned with plan.pencil and path.orient"
+                f"orientation must be a direction, three numbers from tip to spindle, not {orientation!r}; plan.finish "
+                "and plan.engrave_operation also take rules for axes that change"
             )
         out = copy(self)
         out.axis = _unit(orientation, "orientation")

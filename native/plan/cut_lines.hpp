@@ -1,0 +1,13 @@
+// cut_along with a prepared collider.
+#pragma once
+
+#include "riffler/collide/collider.hpp"
+#include "riffler/plan/cut_along.hpp"
+
+namespace riffler::plan {
+
+/// `part`: part and fixtures of the scene.
+CutAlongResult cut_lines(const SetupScene& scene, const Tool& tool, const std::vector<CutLine>& lines,
+                         const CutAlongOptions& options, const collide::Collider& part, const Progress& progress);
+
+}  // namespace riffler::plan
