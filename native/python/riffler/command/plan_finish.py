@@ -1,7 +1,8 @@
-"""Finish a part from one side in rows, and write the program.
+"""Finish a part in rows, and write the program.
 
 riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
 riffler plan finish part.stl --tool ball:6 --pattern waterline --slopes 30,90 --out walls.ngc
+riffler plan finish part.stl --tool ball:6 --orientation normal --post tcp --out five-axes.ngc
 riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
 
 The default stock is the part's box with the allowance on top. The program is simulated on the stock before it is
@@ -18,7 +19,7 @@ from .. import plan
 from .arguments import finite, input_file, length
 from .console import Console, number
 from .parser import Parser
-from .plan_operation import add_lead, add_lengths, add_scene, add_tool, feeds_of, lead_of, point, run_operation
+from .plan_operation import add_lead, add_lengths, add_scene, add_tool, feeds_of, lead_of, point, rule_of, run_operation
 
 HELP = "finish a part in rows, as NC code"
 
@@ -47,7 +48,20 @@ def add_arguments(parser: Parser) -> None:
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_lead(parser)
     parser.add_argument("--rest", metavar="MM", help="finish only where more material than this stands")
-    add_scene(parser, "1000")
+    add_scene(
+        parser,
+        "1000",
+        ", or a rule for axes that change: normal, least_tilt, lead,tilt in degrees, towards=x,y,z, away=x,y,z",
+    )
+    parser.add_argument(
+        "--max-tilt",
+        metavar="DEG",
+        default="60",
+        help="largest angle of a rule's axes from the direction 0,0,1 (default 60)",
+    )
+    parser.add_argument(
+        "--max-turn", metavar="DEG", help="largest change of a rule's axes in a mm of a row (default 5.7)"
+    )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -61,6 +75,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         lambda setup, tool, progress: plan.finish(setup, tool, arguments.pattern, progress=progress, **options),
         rows,
         options["allowance"],
+        rules=True,
     )
 
 
@@ -76,6 +91,9 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
         "slopes": (slopes[0], min(slopes[1], math.pi / 2) if slopes[1] <= 90 else slopes[1]),
         "centre": None if arguments.centre is None else point(arguments.centre, "--centre"),
         "rest": None if arguments.rest is None else length(arguments.rest, "--rest"),
+        "orientation": rule_of(arguments.orientation),
+        "max_tilt": math.radians(finite(arguments.max_tilt, "--max-tilt")),
+        **({} if arguments.max_turn is None else {"max_turn": math.radians(length(arguments.max_turn, "--max-turn"))}),
         "climb": not arguments.conventional,
         "lead": lead_of(arguments),
         **feeds_of(arguments),

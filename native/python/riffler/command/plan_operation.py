@@ -43,8 +43,9 @@ def lead_of(arguments: argparse.Namespace) -> float | None:
     return None if arguments.lead is None else finite(arguments.lead, "--lead")
 
 
-def add_scene(parser: Parser, feed: str) -> None:
-    """Adds options for feeds, stock, fixtures, machine and the program's file."""
+def add_scene(parser: Parser, feed: str, rules: str = "") -> None:
+    """Adds options for feeds, stock, fixtures, machine and the program's file. ``rules``: what else than a direction
+    ``--orientation`` takes."""
     add_lengths(parser, ("--clearance", "5", "height of rapids above everything"))
     parser.add_argument("--feed", metavar="F", default=feed, help=f"mm/min of cuts (default {feed})")
     parser.add_argument("--plunge", metavar="F", help="mm/min of plunges (default a third of the feed)")
@@ -54,8 +55,8 @@ def add_scene(parser: Parser, feed: str) -> None:
     parser.add_argument("--origin", metavar="X,Y,Z", help="lower corner of a stock of given sizes")
     parser.add_argument(
         "--orientation",
-        metavar="X,Y,Z",
-        help="direction from tip to spindle (default 0,0,1), with rotary axes",
+        metavar="AXIS" if rules else "X,Y,Z",
+        help=f"direction x,y,z from tip to spindle (default 0,0,1){rules}, with rotary axes",
     )
     parser.add_argument("--zero", metavar="X,Y,Z", help="zero point of the program (default 0,0,0)")
     add_fixtures(parser)
@@ -79,9 +80,10 @@ def run_operation(
     planned: Callable[[plan.Setup, Tool, Any], plan.Operation],
     counts: Callable[[dict[str, Any]], list[tuple[str, str]]],
     allowance: float,
+    rules: bool = False,
 ) -> int:
     """Reads the scene, plans with ``planned(setup, tool, progress)``, checks and writes. ``counts`` makes rows of the
-    result's table from its data."""
+    result's table from its data. ``rules``: whether `rule_of` may have a rule."""
     path, out = input_file(arguments.part, PARTS), output_file(arguments.out, CODE + PROGRAMS)
     post = machine_name(arguments.post, "--post")
     asked = tools.parse(arguments.tool)
@@ -97,7 +99,7 @@ def run_operation(
         clearance=length(arguments.clearance, "--clearance"),
         machine=post,
         origin=np.zeros(3) if arguments.zero is None else point(arguments.zero, "--zero"),
-    ).along(_direction(arguments.orientation))
+    ).along(None if rules and is_rule(arguments.orientation) else _direction(arguments.orientation))
     with console.step(doing) as progress:
         op = planned(setup, tool, progress)
     if not len(op):
@@ -112,6 +114,35 @@ def run_operation(
     data = summary(op) | {"part": str(path), "out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
     console.result(data, f"{out.name} written", [*counts(data), *rows(data)])
     return 0
+
+
+def is_rule(text: str | None) -> bool:
+    """Whether a text of ``--orientation`` is a rule of `rule_of`, not a direction."""
+    return text is not None and ("=" in text or text.count(",") != 2)
+
+
+def rule_of(text: str | None) -> Any:
+    """The rule of ``--orientation`` in the form of plan.finish: normal, least_tilt, LEAD,TILT in degrees,
+    towards=X,Y,Z, away=X,Y,Z, or either with a file of a curve. None for a direction."""
+    if text is None or not is_rule(text):
+        return None
+    if text in ("normal", "least_tilt"):
+        return text
+    kind, equals, target = text.partition("=")
+    if equals and kind in ("towards", "away"):
+        if target.lower().endswith(plan.curves.FORMATS):
+            found = plan.read_curves(input_file(target, plan.curves.FORMATS))
+            if len(found) != 1:
+                raise ValueError(f"--orientation {text}: {len(found)} curves in the file; one expected")
+            return {kind: found[0]}
+        return {kind: point(target, f"--orientation {kind}")}
+    numbers = text.split(",")
+    if len(numbers) == 2:
+        return tuple(np.radians([finite(one, "--orientation: angle") for one in numbers]))
+    raise ValueError(
+        f"--orientation {text}: a direction x,y,z expected, or normal, least_tilt, lead,tilt in degrees, towards=x,y,z "
+        "or away=x,y,z"
+    )
 
 
 def _direction(text: str | None) -> np.ndarray | None:

@@ -42,6 +42,40 @@ def curves(table: Table, key: str) -> Any:
     return [Table(table.file, {key: curve}, table.path).rows(key, 3) for curve in value]
 
 
+def orientation(table: Table, key: str) -> Any:
+    """A rule for axes as plan.finish takes it, with lead and tilt in degrees; a direction of any length as a unit
+    vector."""
+    value = table.data.get(key)
+    if isinstance(value, str):
+        return table.text(key, ("normal", "least_tilt"))
+    if isinstance(value, dict):
+        sub = table.sub(key)
+        assert sub is not None
+        kinds = [kind for kind in ("towards", "away") if sub.has(kind)]
+        if len(kinds) != 1:
+            raise table.error(key, "either towards or away expected, as in { towards = [0, 0, 100] }")
+        is_point = isinstance(value[kinds[0]], list) and not any(isinstance(one, list) for one in value[kinds[0]])
+        target = sub.vector(kinds[0], 3) if is_point else points(sub, kinds[0])
+        sub.done()
+        return {kinds[0]: target}
+    if isinstance(value, list) and len(value) == 2:
+        lead = table.vector(key, 2)
+        assert lead is not None
+        return tuple(math.radians(float(x)) for x in lead)
+    return direction(table, key)
+
+
+def direction(table: Table, key: str) -> Any:
+    """The key's unit vector; the file may have any length."""
+    vector = table.vector(key, 3)
+    if vector is None:
+        return None
+    length = float(np.linalg.norm(vector))
+    if not length > 0:
+        raise table.error(key, "a direction expected, as in [0, 0, 1]")
+    return vector / length
+
+
 def points(table: Table, key: str) -> Any:
     """Points, from all curves of a file or from a list in the job file itself."""
     if isinstance(table.data.get(key), str):
@@ -65,12 +99,14 @@ class Kind:
     options: Mapping[str, Reader]
     needed: Mapping[str, str]
     feeds: tuple[str, ...] = ("feed", "plunge", "spindle")  # from the tool, if the operation does not set them
+    orientation: Reader | None = direction  # None: the operation takes none
 
     def read(self, table: Table) -> dict[str, Any]:
         for key, example in self.needed.items():
             if not table.has(key):
                 raise table.missing(key, example)
-        found = {key: read(table, key) for key, read in self.options.items()}
+        more = {} if self.orientation is None else {"orientation": self.orientation}
+        found = {key: read(table, key) for key, read in {**self.options, **more}.items()}
         return {key: value for key, value in found.items() if value is not None}
 
 
@@ -100,8 +136,11 @@ KINDS: dict[str, Kind] = {
             "region": curves,
             "lead": NOT_NEGATIVE,
             "rest": POSITIVE,
+            "max_tilt": ANGLE,
+            "max_turn": ANGLE,
         },
         {},
+        orientation=orientation,
     ),
     "outline": Kind(
         plan.outline,
@@ -139,5 +178,21 @@ KINDS: dict[str, Kind] = {
             "rest": POSITIVE,
         },
         {},
+    ),
+    "engrave": Kind(
+        plan.engrave_operation,
+        {"curves": curves, "depth": POSITIVE, "tolerance": POSITIVE, "reach": POSITIVE},
+        {"curves": '"letters.obj"'},
+        orientation=orientation,
+    ),
+    "swarf": Kind(
+        plan.swarf_operation,
+        {
+            "side": partial(_text, choices=("better", "first", "second")),
+            "height": POSITIVE,
+            "tolerance": POSITIVE,
+        },
+        {},
+        orientation=None,
     ),
 }

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .._core import FormatError, Mesh, Tool, Volume, machine_options, machines
 from ..formats import MESHES, PARTS, VOLUMES
 from . import tool_files
-from .kinds import KINDS, Kind
+from .kinds import KINDS, Kind, direction
 from .table import JobError, JobFile, Table
 
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
@@ -245,7 +245,7 @@ def _machine(
 ) -> tuple[str, dict[str, Any], NDArray[np.float64], float, NDArray[np.float64]]:
     sub = table.sub("machine") or Table(table.file, {}, ())
     name = sub.text("name", machines()) or "3-axis"
-    axis = _direction(sub, "axis")
+    axis = direction(sub, "axis")
     axis = np.array([0.0, 0.0, 1.0]) if axis is None else axis
     clearance = sub.number("clearance", above=0) or 5.0
     zero = np.zeros(3)
@@ -268,17 +268,6 @@ def _machine(
         options = dict(more.data)
     sub.done()
     return name, options, axis, clearance, zero
-
-
-def _direction(table: Table, key: str) -> NDArray[np.float64] | None:
-    """The key's unit vector; the file may have any length."""
-    vector = table.vector(key, 3)
-    if vector is None:
-        return None
-    length = float(np.linalg.norm(vector))
-    if not length > 0:
-        raise table.error(key, "a direction expected, as in [0, 0, 1]")
-    return vector / length
 
 
 def _tools(table: Table, reach: float) -> dict[int, JobTool]:
@@ -384,8 +373,6 @@ def _operations(table: Table, tools: Mapping[int, JobTool]) -> list[JobOperation
         name = sub.text("name") or f"{kind} with tool {number}"
         tool = tools[number]
         options = KINDS[kind].read(sub)
-        if (orientation := _direction(sub, "orientation")) is not None:
-            options["orientation"] = orientation
         for key in KINDS[kind].feeds:
             value = sub.number(key) if key == "spindle" else sub.number(key, above=0)
             value = value if value is not None else getattr(tool, key)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core, files, plan
-from .._core import Mesh, Program, VerifyReport, Volume
+from .._core import Finding, Mesh, Program, VerifyReport, Volume
 from ..arguments import Progress
 from ..formats import MESHES
 from ..plan.setups import ROUNDING
@@ -139,13 +139,12 @@ def run(job: Job, *, step: Step = _silent, write: bool = True) -> Result:
             program = plan.program(setup, ops, numbers=numbers, progress=progress)
         except ValueError as error:
             raise JobError(_program_error(job, str(error))) from None
-    tolerance = max(op.tolerance for op in ops if len(op))
     program = _with_header(program, job)
     if not write:
-        report = _verified(job, setup, _moved(program, job.zero), tolerance, None)
+        report = _verified(job, setup, _moved(program, job.zero), operations, None)
     else:
         with step("write"), files.drafting(job.program) as draft:
-            report = _written(job, setup, program, tolerance, draft)
+            report = _written(job, setup, program, operations, draft)
     deviation = report.stock_deviation()
     if write and job.left is not None:
         with files.drafting(job.left) as draft:
@@ -203,33 +202,51 @@ def _moved(program: Program, by: np.ndarray) -> Program:
     return program.transformed(matrix)
 
 
-def _written(job: Job, setup: plan.Setup, program: Program, tolerance: float, draft: Path) -> VerifyReport:
+def _written(job: Job, setup: plan.Setup, program: Program, operations: list[Done], draft: Path) -> VerifyReport:
     """Writes the program to a draft, reads it as the machine would, and verifies the program that was read."""
+    tolerance = max(done.operation.tolerance for done in operations if len(done.operation))
     try:
         program.write(draft, post=job.machine, tolerance=0.1 * tolerance, options=job.machine_options or None)
         back = Program.read(draft, machine=job.machine, options=job.machine_options or None)
     except ValueError as error:
         raise JobError(f"{job.path.name}, [machine]: {error}") from None
-    return _verified(job, setup, _moved(back, job.zero), tolerance, program.tools)
+    return _verified(job, setup, _moved(back, job.zero), operations, program.tools)
 
 
-def _verified(job: Job, setup: plan.Setup, program: Program, tolerance: float, tools: dict | None) -> VerifyReport:
+def _verified(
+    job: Job, setup: plan.Setup, program: Program, operations: list[Done], tools: dict | None
+) -> VerifyReport:
+    ops = [(done.job.tool.number, done.operation) for done in operations if len(done.operation)]
+    tolerance = max(op.tolerance for _, op in ops)
+    engraved: dict[int, float] = {}
+    for number, op in ops:
+        engraved[number] = min(op.engraved, engraved.get(number, op.engraved))
     frame = np.eye(4)
     frame[:3, 3] = -job.zero
-    report = _core.verify(
-        program,
-        job.stock,
-        job.part,
-        setup.obstacles,
-        tools=tools,
-        tolerance=tolerance,
-        gouge_tolerance=1.1 * tolerance + ROUNDING,
-        machine=job.machine,
-        machine_options=job.machine_options or None,
-        machine_frame=frame,
-    )
-    if report.findings:
-        first = report.findings[0]
+
+    def verified(deeper: float) -> VerifyReport:
+        return _core.verify(
+            program,
+            job.stock,
+            job.part,
+            setup.obstacles,
+            tools=tools,
+            tolerance=tolerance,
+            gouge_tolerance=1.1 * tolerance + deeper + ROUNDING,
+            machine=job.machine,
+            machine_options=job.machine_options or None,
+            machine_frame=frame,
+        )
+
+    def is_meant(found: Finding) -> bool:
+        return found.kind == "gouge" and found.value <= 1.1 * tolerance + engraved.get(found.tool, 0.0) + ROUNDING
+
+    report = verified(0.0)
+    if report.findings and all(map(is_meant, report.findings)):
+        report = verified(max(engraved.values()))  # the report of what is not meant
+    findings = [found for found in report.findings if not is_meant(found)]
+    if findings:
+        first = findings[0]
         at = ", ".join(f"{x:.3f}" for x in first.point)
         raise JobError(f"{job.program.name} not written: line {first.line}, at ({at}): {first.message}")
     return report
