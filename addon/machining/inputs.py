@@ -8,10 +8,16 @@ import numpy as np
 import riffler
 
 from ..blender import meshes, object_surfaces, scene_units
-from ..plan import obstacles
+from ..plan import given_curves, obstacles
 from ..sculpt import live_registry, sculpt_store, sculpts
 from .pure.job_run import Wanted, keys_of
 
+MISSING = {
+    "points": "there are no holes: choose a collection with an object at each of them",
+    "curves": "there are no curves: choose a collection with curve objects on the part",
+    "target": "there is no target: choose an object that the tool leans to or from",
+}
+CURVE_ERROR = 0.001  # mm between a curve and its polyline
 NO_STOCK = "There is no stock: use Make Stock, or choose a sculpt that the part lies in"
 
 
@@ -88,10 +94,11 @@ def take(context):
     volume = live_registry.content(ob).volume.copy()
     clearance = scene_units.clean(settings.clearance)
     base = _base([part, *fixtures], sculpt_store.identity(ob.data), axis, clearance)
-    wanted = [row.wanted(lambda collection: _origins(collection, scene, to_stock)) for row in rows]
+    wanted = [row.wanted(lambda field, value: _place(field, value, scene, to_stock)) for row in rows]
     for one in wanted:
-        if one.options.get("points") == []:
-            raise ValueError(f"{one.name}: there are no holes: choose a collection with an object at each of them")
+        for field, missing in MISSING.items():
+            if one.options.get(field) == []:
+                raise ValueError(f"{one.name}: {missing}")
     names = (scene.riffler.plan.part.name, ob.name)
     return Inputs(part, volume, fixtures, axis, clearance, to_world, wanted, keys_of(base, wanted), names)
 
@@ -100,11 +107,37 @@ def _placed(mesh, matrix):
     return riffler.Mesh(*object_surfaces.placed(np.asarray(mesh.vertices), np.asarray(mesh.triangles), matrix))
 
 
+def _place(field, value, scene, matrix):
+    """What a field of MISSING stands for, mm, mapped by `matrix` (4, 4) from the scene's mm: origins, polylines, or the
+    points of a target. Empty if it is not set."""
+    if field == "points":
+        return _origins(value, scene, matrix)
+    if field == "curves":
+        return _polylines([ob for ob in value.all_objects if ob.type == "CURVE"] if value else [], scene, matrix)
+    if value is None:
+        return []
+    if value.type == "CURVE":
+        lines = _polylines([value], scene, matrix)
+        return [point for line in lines[:1] for point in line]
+    place = np.array(value.matrix_world.translation) * scene_units.mm_per_unit(scene)
+    return [_rounded(matrix, place)]
+
+
+def _polylines(objects, scene, matrix):
+    """The splines of curve objects, sorted by name, as lists of points."""
+    found = given_curves.lines(sorted(objects, key=lambda ob: ob.name), scene, CURVE_ERROR)
+    return [[_rounded(matrix, point) for point in line] for line in found]
+
+
+def _rounded(matrix, place):
+    return [round(float(x), 6) for x in matrix[:3, :3] @ place + matrix[:3, 3]]
+
+
 def _origins(collection, scene, matrix):
     """Origins of a collection's objects, sorted by name, mm, mapped by `matrix` (4, 4) from the scene's mm."""
     found = sorted(collection.all_objects, key=lambda ob: ob.name) if collection else []
     places = [np.array(ob.matrix_world.translation) * scene_units.mm_per_unit(scene) for ob in found]
-    return [[round(float(x), 6) for x in matrix[:3, :3] @ place + matrix[:3, 3]] for place in places]
+    return [_rounded(matrix, place) for place in places]
 
 
 def _base(surfaces, stock, axis, clearance):
@@ -115,6 +148,25 @@ def _base(surfaces, stock, axis, clearance):
         corners = np.round(np.asarray(mesh.vertices) * 1e6).astype(np.int64)
         prints.append(hashlib.blake2b(corners.tobytes() + np.asarray(mesh.triangles).tobytes()).hexdigest())
     return json.dumps([prints, stock, [round(float(x), 9) for x in axis], clearance])
+
+
+def _glance(field, value, scene):
+    """Like `_place`, but quicker for curves: their control points, not their polylines."""
+    if value is None or field == "points":
+        return _origins(value, scene, np.eye(4))
+    objects = value.all_objects if field == "curves" else [value]
+    found = sorted((ob for ob in objects if field == "target" or ob.type == "CURVE"), key=lambda ob: ob.name)
+    out = []
+    for ob in found:
+        out.append(meshes.matrix(ob.matrix_world).round(6).tolist())
+        for spline in ob.data.splines if ob.type == "CURVE" else ():
+            points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+            names = ("co", "handle_left", "handle_right") if spline.type == "BEZIER" else ("co",)
+            for name in names:
+                values = np.empty(len(points) * (3 if spline.type == "BEZIER" else 4), np.float32)
+                points.foreach_get(name, values)
+                out.append([spline.use_cyclic_u, hashlib.blake2b(values.tobytes()).hexdigest()])
+    return out
 
 
 def glances(scene):
@@ -128,7 +180,7 @@ def glances(scene):
     mm = scene_units.mm_per_unit(scene)
     base = json.dumps([names, places, stock, scene_units.clean(settings.clearance), mm])
     on = [k for k, row in enumerate(settings.rows) if row.on]
-    options = [row.options(lambda found: _origins(found, scene, np.eye(4))) for row in settings.switched_on()]
+    options = [row.options(lambda field, value: _glance(field, value, scene)) for row in settings.switched_on()]
     wanted = [
         Wanted("", row.kind, {"text": row.tool}, given)
         for row, given in zip(settings.switched_on(), options, strict=True)

@@ -7,7 +7,7 @@ from ..common import units
 from ..plan.panel import Tab, draw_library
 from ..translations import local
 from . import calculate, edit_operations, inputs, make_stock, properties
-from .pure.operation_kinds import KINDS
+from .pure.operation_kinds import KINDS, fields_of
 
 ICONS = {"OPEN": "FILE_REFRESH", "DONE": "CHECKMARK", "EMPTY": "INFO", "FAILED": "ERROR"}
 MEANS = {state: (said, means) for state, said, means in properties.STATES}
@@ -115,7 +115,7 @@ class RIFFLER_PT_job(Tab, bpy.types.Panel):
         column = box.column(align=True)
         column.use_property_split = True
         column.use_property_decorate = False
-        for key in KINDS[row.kind].fields:
+        for key in fields_of(row.kind, row):
             column.prop(row, key)
         if not row.on:
             return

@@ -21,9 +21,10 @@ from ..blender.fields import angle, length, stored_number
 from ..common import json_object
 from ..sculpt import sculpts
 from .pure.job_run import Wanted
-from .pure.operation_kinds import KINDS, OPERATION_KINDS
+from .pure.operation_kinds import OPERATION_KINDS, fields_of
 
 KIND_ITEMS = tuple((kind.id, kind.label, kind.description, kind.icon, kind.number) for kind in OPERATION_KINDS)
+SIDES = riffler.plan.strategies.swarf.SIDES
 PATTERN_LABELS = {
     "parallel": ("Parallel", "Rows in planes, at an angle about the tool's axis"),
     "waterline": ("Waterline", "Level curves around steep faces"),
@@ -34,6 +35,14 @@ PATTERN_LABELS = {
 PATTERNS = tuple(
     (name, *PATTERN_LABELS.get(name, (name.capitalize(), "")), "NONE", stored_number(name))
     for name in riffler.plan.PATTERNS
+)
+ORIENTATIONS = (
+    ("AXIS", "Along the Axis", "The tool stands along the job's axis everywhere"),
+    ("NORMAL", "Normal", "The tool stands square to the surface, in five axes"),
+    ("LEAD", "Lead and Tilt", "The tool leans forward and to the left from the surface's normal, in five axes"),
+    ("TOWARDS", "Towards", "The tool's upper end leans towards an object, in five axes"),
+    ("AWAY", "Away From", "The tool's upper end leans away from an object, in five axes"),
+    ("LEAST", "Least Tilt", "The tool leans only where it would touch part or fixtures otherwise, in five axes"),
 )
 SHAPES = (
     ("BOX", "Box", "The part's bounding box with an allowance"),
@@ -64,6 +73,40 @@ class OperationSettings:
     pattern: EnumProperty(name="Pattern", items=PATTERNS, default="parallel", description="How the rows run")
     cusp: length("Cusp", 0.01, "Largest height of the ridges between rows, in mm", 1e-5)
     angle: angle("Angle", 0.0, "Direction of the rows about the tool's axis", -2 * math.pi, 2 * math.pi)
+    orientation: EnumProperty(
+        name="Orientation",
+        items=ORIENTATIONS,
+        default="AXIS",
+        description="How the tool stands along the rows. All but the first need a machine with rotary axes",
+    )
+    facing: EnumProperty(
+        name="Orientation",
+        items=ORIENTATIONS[:3],
+        default="AXIS",
+        description="How the tool stands along the curves. All but the first need a machine with rotary axes",
+    )
+    lead: angle("Lead", 0.0, "How far the tool leans forward from the surface's normal", -1.5, 1.5)
+    tilt: angle("Tilt", 0.0, "How far the tool leans to the left from the surface's normal", -1.5, 1.5)
+    target: PointerProperty(
+        name="Target",
+        type=bpy.types.Object,
+        description="Object that the tool leans to or from: the origin, or of a curve the nearest point",
+    )
+    max_tilt: angle("Largest Tilt", math.radians(60), "Largest angle between tool and axis", 0.01, math.radians(80))
+    max_turn: angle("Turn in 1 mm", 0.1, "Largest turn of the tool while it moves 1 mm", 1e-3, math.pi)
+    curves: PointerProperty(
+        name="Curves",
+        type=bpy.types.Collection,
+        description="Collection whose curve objects are engraved",
+    )
+    engrave_depth: length("Depth of Cut", 0.3, "mm of a cut below the surface", 1e-3)
+    wall: EnumProperty(
+        name="Wall",
+        items=[(name, label, about, "NONE", stored_number(name)) for name, label, about in SIDES],
+        default="better",
+        description="Which of the two walls of a valley the flank cuts",
+    )
+    wall_height: length("Wall Height", 0.0, "mm of wall above the ball's centre; 0: as far as wall and flank reach")
     slope_from: angle("Slope from", 0.0, "Faces that are more level than this are left out", 0.0, math.pi / 2)
     slope_to: angle("Slope to", math.pi / 2, "Faces that are steeper than this are left out", 0.0, math.pi / 2)
     depth: length("Depth", 0.0, "mm of the tip below the part's highest point; 0: down to the underside of the stock")
@@ -113,19 +156,20 @@ class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
     def take_tool(self, tool):
         self.tool = json.dumps(tool, ensure_ascii=False)
 
-    def options(self, places=lambda collection: []):
-        """The arguments of the kind's `plan`. `places`: returns the origins of objects in a collection or None."""
+    def options(self, places=None):
+        """The arguments of the kind's `plan`. `places`: returns what the fields of `inputs.PLACES` stand for, given
+        field and value; without it they are empty."""
         out = {}
-        for field in KINDS[self.kind].fields:
+        for field in fields_of(self.kind, self):
             value = getattr(self, field)
-            if field == "points":
-                value = places(value)
+            if field in ("points", "curves", "target"):
+                value = places(field, value) if places else []
             out[field] = scene_units.clean(value) if isinstance(value, float) else value
         if "engagement" in out:
             out["engagement"] = scene_units.clean(out["engagement"] / 100)
-        for field in ("slope_from", "slope_to"):  # a float32 may be above the largest slope
+        for field, most in (("slope_from", math.pi / 2), ("slope_to", math.pi / 2), ("max_tilt", math.radians(80))):
             if field in out:
-                out[field] = min(out[field], math.pi / 2)
+                out[field] = min(out[field], most)  # a float32 may be above the largest value
         return out
 
     def wanted(self, places):

@@ -1,5 +1,6 @@
 """The curves that a strategy starts from: the selected curve objects, where they lie in the scene."""
 
+import bpy
 import numpy as np
 
 from ..blender import curve_objects, meshes, scene_units
@@ -18,16 +19,21 @@ def selected(context, tolerance):
     found, texts = objects(context), [ob.name for ob in context.selected_objects if ob.type == "FONT"]
     if not found and texts:
         raise ValueError(f"{texts[0]} is a text: use Object > Convert > Curve first")
-    depsgraph, out = context.evaluated_depsgraph_get(), []
+    return lines(found, context.scene, tolerance)
+
+
+def lines(found, scene, tolerance):
+    """The splines of curve objects as polylines, like `selected`."""
+    depsgraph, out = bpy.context.evaluated_depsgraph_get(), []
     for ob in found:
         if curve_objects.deformed(ob):
             raise ValueError(
                 f"{ob.name} has modifiers or shape keys, which are not followed: convert it to a curve first"
             )
         to_mm = meshes.matrix(ob.evaluated_get(depsgraph).matrix_world)
-        to_mm[:3] *= scene_units.mm_per_unit(context.scene)
-        lines = [splines.evaluate(spline, tolerance)[0] for spline in curve_objects.splines(ob, depsgraph, to_mm)]
-        out += [line for line in lines if len(line) > 1]
+        to_mm[:3] *= scene_units.mm_per_unit(scene)
+        polylines = [splines.evaluate(spline, tolerance)[0] for spline in curve_objects.splines(ob, depsgraph, to_mm)]
+        out += [line for line in polylines if len(line) > 1]
     if found and not out:
         raise ValueError(f"{found[0].name} has no spline with two points: add points, or select another curve")
     return [np.ascontiguousarray(line) for line in out]

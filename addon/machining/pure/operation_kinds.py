@@ -22,8 +22,31 @@ class OperationKind:
     plan: Callable[..., riffler.plan.Operation]
 
 
-def finish(setup, tool, *, pattern, slope_from, slope_to, **options):
-    return riffler.plan.finish(setup, tool, pattern, slopes=(slope_from, slope_to), **options)
+def finish(setup, tool, *, pattern, slope_from, slope_to, orientation, lead=0.0, tilt=0.0, target=None, **options):
+    rule = rule_of(orientation, lead, tilt, target)
+    return riffler.plan.finish(setup, tool, pattern, slopes=(slope_from, slope_to), orientation=rule, **options)
+
+
+def engrave(setup, tool, *, curves, engrave_depth, facing, lead=0.0, tilt=0.0, **options):
+    rule = rule_of(facing, lead, tilt, None)
+    return riffler.plan.engrave_operation(setup, tool, curves, depth=engrave_depth, orientation=rule, **options)
+
+
+def swarf(setup, tool, *, wall, wall_height, **options):
+    return riffler.plan.swarf_operation(setup, tool, side=wall, height=wall_height or None, **options)
+
+
+def rule_of(orientation, lead, tilt, target):
+    """The argument ``orientation`` of riffler.plan for an entry of properties.ORIENTATIONS."""
+    rules = {
+        "AXIS": None,
+        "NORMAL": "normal",
+        "LEAD": (lead, tilt),
+        "TOWARDS": {"towards": target},
+        "AWAY": {"away": target},
+        "LEAST": "least_tilt",
+    }
+    return rules[orientation]
 
 
 def outline(setup, tool, *, depth, **options):
@@ -54,6 +77,12 @@ OPERATION_KINDS = (
             "pattern",
             "cusp",
             "angle",
+            "orientation",
+            "lead",
+            "tilt",
+            "target",
+            "max_tilt",
+            "max_turn",
             "slope_from",
             "slope_to",
             "allowance",
@@ -90,7 +119,46 @@ OPERATION_KINDS = (
         ("passes", "tolerance", "feed", "spindle"),
         riffler.plan.pencil_operation,
     ),
+    OperationKind(
+        "ENGRAVE",
+        "Engrave",
+        "Cut curves into the part to a depth",
+        "GREASEPENCIL",
+        5,
+        ("curves", "engrave_depth", "facing", "lead", "tilt", "tolerance", "feed", "spindle"),
+        engrave,
+    ),
+    OperationKind(
+        "SWARF",
+        "Swarf",
+        "Cut ruled walls above the part's valleys with the cutter's flank",
+        "MOD_SOLIDIFY",
+        6,
+        ("wall", "wall_height", "tolerance", "feed", "spindle"),
+        swarf,
+    ),
 )
+# Fields that other fields need: the other field, and its values.
+NEEDS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "lead": {"orientation": ("LEAD",), "facing": ("LEAD",)},
+    "tilt": {"orientation": ("LEAD",), "facing": ("LEAD",)},
+    "target": {"orientation": ("TOWARDS", "AWAY")},
+    "max_tilt": {"orientation": ("NORMAL", "LEAD", "TOWARDS", "AWAY", "LEAST")},
+    "max_turn": {"orientation": ("NORMAL", "LEAD", "TOWARDS", "AWAY", "LEAST")},
+}
+
+
+def fields_of(kind, row):
+    """The fields of an operation that count with its other settings. `row`: has the settings as attributes."""
+    fields = KINDS[kind].fields
+
+    def counts(field):
+        needs = [(other, values) for other, values in NEEDS.get(field, {}).items() if other in fields]
+        return all(getattr(row, other) in values for other, values in needs)
+
+    return [field for field in fields if counts(field)]
+
+
 KINDS: Mapping[str, OperationKind] = {kind.id: kind for kind in OPERATION_KINDS}
 # Initial settings of a new operation of each kind, where they differ from the field's default.
 FIRST: Mapping[str, Mapping[str, Any]] = {
@@ -99,4 +167,6 @@ FIRST: Mapping[str, Mapping[str, Any]] = {
     "OUTLINE": {"allowance": 0.0, "tolerance": 0.01, "feed": 1000.0},
     "DRILL": {"tolerance": 0.05, "feed": 200.0, "spindle": 3000.0},
     "PENCIL": {"tolerance": 0.01, "feed": 800.0},
+    "ENGRAVE": {"tolerance": 0.01, "feed": 500.0},
+    "SWARF": {"tolerance": 0.05, "feed": 500.0},
 }

@@ -58,6 +58,7 @@ def _facts(op: Operation) -> dict[str, Any]:
         "reason": op.reason,
         "spindle": op.spindle,
         "tolerance": op.tolerance,
+        "engraved": op.engraved,
         "time_s": report.time_s,
         "cut_mm": report.cut_mm,
         "air_mm": report.air_mm,
@@ -75,4 +76,5 @@ def _operation(row: dict[str, Any], poses: np.ndarray, kind: np.ndarray, feed: n
         row["time_s"], row["cut_mm"], row["air_mm"], row["largest_engagement"], blocked, row["stats"]
     )
     tool = riffler.Tool.from_dict(row["tool"])
-    return Operation(poses, kind, feed, tool, report, row["reason"], row["spindle"], row["tolerance"])
+    engraved = row.get("engraved", 0.0)  # absent in files of older versions
+    return Operation(poses, kind, feed, tool, report, row["reason"], row["spindle"], row["tolerance"], engraved)

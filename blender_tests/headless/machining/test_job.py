@@ -297,3 +297,66 @@ def test_damaged_moves_are_calculated_again():
     common.part("machining.job_store").detach()
     assert "damaged" in refused(bpy.ops.riffler.machining_nc, filepath=common.out("never.ngc"), post="3-axis")
     assert calculate() == {"FINISHED"} and rough.key in stored()
+
+
+def curve_object(name, points):
+    data = bpy.data.curves.new(name, "CURVE")
+    data.dimensions = "3D"
+    spline = data.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for point, at in zip(spline.points, points, strict=True):
+        point.co = (*at, 1.0)
+    return bpy.data.objects.new(name, data)
+
+
+@common.core_bound
+def test_axes_that_change_and_engraving():
+    """Finishes a step with the tool towards an object, and engraves a curve into its upper face."""
+    _, finish = job()
+    settings().rows.remove(0)
+    (finish,) = settings().rows
+    finish.orientation, finish.slope_to = "TOWARDS", np.radians(20)
+    assert "no target" in refused(calculate)
+    target = bpy.data.objects.new("Target", None)
+    target.location = (30, 20, 90)
+    engraved = bpy.data.collections.new("Engraved")
+    bpy.context.scene.collection.children.link(engraved)
+    engraved.objects.link(target)
+    bpy.context.view_layer.update()
+    finish.target = target
+    bpy.ops.riffler.machining_add(kind="ENGRAVE")
+    engrave = settings().rows[1]
+    assert "no curves" in refused(calculate)
+    curve = curve_object("Line", [(20, 30, 24), (40, 30, 24)])
+    engraved.objects.link(curve)
+    bpy.context.view_layer.update()
+    engrave.curves, engrave.engrave_depth = engraved, 0.25
+    assert calculate() == {"FINISHED"} and settings().problem == "", settings().problem
+    assert states() == ["DONE", "DONE"]
+    op = stored()[finish.key]
+    cuts = op.poses[op.kind == 2]
+    tilted = np.arccos(cuts[:, 5].clip(-1, 1))
+    assert 0.2 < tilted.max() < 0.6
+    line = stored()[engrave.key]
+    assert np.isclose(line.report.cut_mm, 20, atol=1e-3) and np.isclose(line.engraved, 0.25)
+    assert np.isclose(line.poses[line.kind == 2][:, 2].min(), 23.75, atol=1e-3)
+    curve.data.splines[0].points[0].co.x = 22
+    target.location.z = 120
+    bpy.context.view_layer.update()
+    assert states() == ["OPEN", "OPEN"]
+
+
+@common.core_bound
+def test_swarf_cuts_and_the_fields_of_each_orientation():
+    job()
+    settings().rows.clear()
+    bpy.ops.riffler.machining_add(kind="SWARF")
+    (swarf,) = settings().rows
+    calculate()
+    assert swarf.state == "DONE" and swarf.cut > 20, (swarf.state, swarf.said)
+    fields_of = common.part("machining.pure.operation_kinds").fields_of
+    swarf.kind = "FINISH"
+    assert "lead" not in fields_of("FINISH", swarf) and "max_tilt" not in fields_of("FINISH", swarf)
+    swarf.orientation = "LEAD"
+    assert {"lead", "tilt", "max_tilt"} <= set(fields_of("FINISH", swarf))
+    assert "target" not in fields_of("FINISH", swarf)
