@@ -19,6 +19,7 @@ from machining_judge import CELL, SLIVER, HeightMap, PartJudge, opened, part_hei
 from machining_parts import KINDS, TOOLS, kinds, random_tool, stock_around
 from riffler import plan
 from riffler.plan.operations import LINK, RAPID
+from tilting_judge import deepest
 
 SELDOM = 0.015  # share of samples that patterns with checks at places may leave too high
 PATTERNS = {"parallel": (0, 65), "waterline": (25, 90), "scallop": (0, 65), "spiral": (0, 65), "radial": (0, 65)}
@@ -56,6 +57,7 @@ class Run:
         self.outline(setup)
         self.drill(setup)
         self.pencil(setup)
+        self.lean(setup)
         return self.faults
 
     def random_tool(self, kinds=TOOLS):
@@ -228,6 +230,31 @@ class Run:
         )
         if op is not None and len(op):
             self.checked("pencil", setup, op, 0.0, 0.03, self.map.copy())
+
+    def lean(self, setup):
+        """Finishes with axes that change, judged by points of a cloud on the part at dense poses of the moves."""
+        tool = self.random_tool(("ball",))
+        lower, upper = self.stock.lower, self.stock.upper
+        target = 0.5 * (lower + upper) + [0, 0, 2 * (upper[2] - lower[2])]
+        rules = ("normal", (0.3, -0.2), {"towards": target}, {"away": lower - 20}, "least_tilt")
+        rule = rules[int(self.random.integers(len(rules)))]
+        pattern = plan.PATTERNS[int(self.random.integers(len(plan.PATTERNS)))]
+        five = plan.Setup(self.part, setup.stock, machine="tcp")
+        options = {"cusp": 0.4, "tolerance": 0.05, "orientation": rule, "slopes": (0.1, 1.1)}
+        op = self.planned("lean", five, lambda progress: plan.finish(five, tool, pattern, progress=progress, **options))
+        if op is None or not len(op):
+            return
+        depth, move = deepest(op, self.part, (0, 1, 2, 3), count=1500, seed=self.number, step=0.8, turn=0.08)
+        if depth > 0.05 + 1e-3:
+            self.fault("lean", f"{rule}, {pattern}: {depth:.4f} mm deep in move {move}, tolerance 0.05")
+        try:
+            plan.program(five, [op])
+        except ValueError as error:  # shank and holder in the stock are found there only
+            note = self.lines.append if self.kind == "scan" or "gouges" not in str(error) else self.fault_of_lean
+            note(f"no program: {error}")
+
+    def fault_of_lean(self, text):
+        self.fault("lean", text)
 
 
 def main():

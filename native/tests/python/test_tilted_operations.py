@@ -156,7 +156,7 @@ def test_errors_of_an_orientation_name_it():
         plan.finish(along_z, tool, orientation=(0, -3, 4))
     for wrong in ("normal", (0.1, 0.2), {"towards": (0, 0, 9)}):
         with pytest.raises(ValueError, match=r"^orientation must be a direction, three numbers"):
-            plan.finish(along_z, tool, orientation=wrong)
+            plan.rough(along_z, tool, orientation=wrong)
 
 
 # ---- rest
