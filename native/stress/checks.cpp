@@ -133,7 +133,8 @@ Allowed allowed_error(const Stage& stage, const Move& move) {
     start = s.to;
   }
   const bool turns = Motion(move.from, move.to).angle() > 0;
-  return {rounding + apex + hollow + (turns ? move.tolerance : 0), turns && hollow == 0};
+  return {rounding + apex + hollow + (turns ? move.tolerance : 0), turns && hollow == 0, hollow,
+          turns || hollow > 0.01 * radius};
 }
 
 }  // namespace riffler::stress

@@ -10,7 +10,6 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr double kNormal = 1e-4;               // rad, allowed error of a stored normal after a straight move
 constexpr double kGrazing = 2.23606797749979;  // √5: where the distance along the ray is more than this times that
                                                // in space, an end is measured in space
 
@@ -57,13 +56,12 @@ class RayComparison {
   RayComparison(const reference::SweptDistance& swept, const Allowed& allowed, const dexel::Grid& before,
                 const dexel::Grid& after, const RayName& ray, double radius, Comparison& out)
       : swept_(swept),
+        rules_(allowed),
         allowed_(allowed.error),
-        along_rays_(allowed.along_rays),
         grid_(after),
         before_(before.ray(ray.i, ray.j)),
         after_(after.ray(ray.i, ray.j)),
         normals_(after.ray_normals(ray.i, ray.j)),
-        turns_(allowed.along_rays),
         radius_(radius),
         ray_(ray),
         out_(out) {}
@@ -107,34 +105,61 @@ class RayComparison {
     ++out_.ends;
     const double off = distance(end);
     double error = std::abs(off);
-    if (along_rays_ && error <= allowed_) error = along(end, near, off);
+    if (rules_.along_rays && error <= allowed_) error = along(end, near, off);
     out_.worst = std::max(out_.worst, error / allowed_);
     if (error > allowed_) fail(off < 0 ? "too little cut, the end" : "cut too deep, the end", end, error);
   }
 
+  struct NormalError {
+    double error, allowed;  // rad
+  };
+
   /// The error of a normal, or none where the surface is not smooth or another part of it is near. A point of the
   /// material at a small distance from the end, against the normal, has the end as the nearest point of the swept
-  /// surface, so the distance grows against the normal there. Differences of two sizes agree where it is smooth.
-  std::optional<double> normal_error(double end, const Vec3& normal, double step) const {
+  /// surface, so the distance grows against the normal there, by 1 mm per mm. The surface counts as smooth if the
+  /// gradient's length is 1 within 1e-5 and central differences of two sizes agree within 2e-5: where two parts of the
+  /// surface are about equally near, they do not. Outside an edge the distance is smooth, and any normal between those
+  /// of both sides passes.
+  std::optional<NormalError> normal_error(double end, const Vec3& normal, double step) const {
     const Vec3 p = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), end}) - 3 * step * normal;
     const Vec3 a = gradient(p, step), b = gradient(p, step / 2);
     if (std::abs(glm::length(a) - 1) > 1e-5 || glm::length(a - b) > 2e-5) return {};
-    return glm::length(glm::normalize(b) + normal);
+    const double error = glm::length(glm::normalize(b) + normal);
+    const bool curved = rules_.hollow > 0 && error > rules_.normal(radius_);
+    return NormalError{error, rules_.normal(curved ? 1 / curvature(p, step) : radius_)};
   }
 
   void compare_normal(double end, const Vec3& normal) {
-    std::optional<double> error;
+    const double finest = std::max(rules_.hollow, 100 * (allowed_ - rules_.hollow));  // the rest of it is rounding
+    std::optional<NormalError> found;
     for (const double size : {1e-3, 1e-4, 1e-5}) {  // a crease is not near at every size
-      const double step = std::max(size * radius_, turns_ ? allowed_ : 0);
-      if (step < 100 * allowed_ && !turns_ && error) break;  // rounding
-      error = normal_error(end, normal, step);
-      if (!error || *error <= kNormal || turns_) break;
+      const double step = std::max(size * radius_, rules_.any_normal ? allowed_ : 0);
+      if (step < finest && !rules_.any_normal && found) break;
+      found = normal_error(end, normal, step);
+      if (!found || found->error <= found->allowed || rules_.any_normal) break;
     }
-    if (!error) return;
+    if (!found) return;
     ++out_.normals;
-    double& worst = turns_ ? out_.turned : out_.worst_normal;
-    worst = std::max(worst, *error);
-    out_.off_normals += !turns_ && *error > kNormal;
+    double& worst = rules_.any_normal ? out_.turned : out_.worst_normal;
+    worst = std::max(worst, found->error);
+    if (rules_.any_normal || found->error <= found->allowed || !out_.problem.empty()) return;
+    std::ostringstream text;
+    text.precision(17);
+    text << "the normal at the end " << end << name_of_ray() << " is " << found->error << " rad off; allowed are "
+         << found->allowed;
+    out_.problem = text.str();
+  }
+
+  /// Largest curvature of the surface (its rank is 1 where a tool moves straight), from the change of the gradient.
+  double curvature(const Vec3& p, double step) const {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+      Vec3 way(0);
+      way[k] = step;
+      const Vec3 change = (gradient(p + way, step) - gradient(p - way, step)) / (2 * step);
+      square += glm::dot(change, change);
+    }
+    return std::sqrt(square);
   }
 
   Vec3 gradient(const Vec3& p, double step) const {
@@ -172,19 +197,22 @@ class RayComparison {
     if (!out_.problem.empty()) return;
     std::ostringstream text;
     text.precision(17);
-    text << what << " " << s << " of ray " << ray_.i << ", " << ray_.j << " of direction "
-         << "xyz"[static_cast<int>(grid_.axis())] << " is " << off << " mm from the swept surface; allowed are "
+    text << what << " " << s << name_of_ray() << " is " << off << " mm from the swept surface; allowed are "
          << allowed_;
     out_.problem = text.str();
   }
 
+  std::string name_of_ray() const {
+    return " of ray " + std::to_string(ray_.i) + ", " + std::to_string(ray_.j) + " of direction " +
+           "xyz"[static_cast<int>(grid_.axis())];
+  }
+
   const reference::SweptDistance& swept_;
+  const Allowed& rules_;
   double allowed_;
-  bool along_rays_;
   const dexel::Grid& grid_;
   std::span<const dexel::Span> before_, after_;
   std::span<const dexel::SpanNormals> normals_;
-  bool turns_;
   double radius_;
   RayName ray_;
   Comparison& out_;

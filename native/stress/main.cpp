@@ -71,13 +71,13 @@ Arguments parse(int argc, char** argv) {
 }
 
 void print_row(const char* cutter, const char* what, const Tally& t) {
-  std::printf("%-15s %-16s %9ld %9ld %10ld %10ld %9ld %6ld %8.3f %8.1e %8.1e %8ld\n", cutter, what, t.moves, t.compared,
-              t.ends, t.points, t.normals, t.off_normals, t.worst, t.worst_normal, t.turned, t.failures);
+  std::printf("%-15s %-16s %9ld %9ld %10ld %10ld %9ld %8.3f %8.1e %8.1e %8ld\n", cutter, what, t.moves, t.compared,
+              t.ends, t.points, t.normals, t.worst, t.worst_normal, t.turned, t.failures);
 }
 
 void print_heading() {
-  std::printf("%-15s %-16s %9s %9s %10s %10s %9s %6s %8s %8s %8s %8s\n", "cutter", "kind", "moves", "compared", "ends",
-              "points", "normals", "off", "worst", "rad", "turned", "failed");
+  std::printf("%-15s %-16s %9s %9s %10s %10s %9s %8s %8s %8s %8s\n", "cutter", "kind", "moves", "compared", "ends",
+              "points", "normals", "worst", "rad", "turned", "failed");
 }
 
 /// Prints the failures from number `first` on at once, because a long run may be interrupted.
@@ -129,8 +129,8 @@ int run_one_session(const Arguments& arguments) {
 int run_all(const Arguments& arguments) {
   Results all;
   std::printf(
-      "seed %llu; worst: error / allowed error; normals of straight moves: off, number beyond 1e-4 rad, and rad, the "
-      "largest; turned: those of turning moves\n",
+      "seed %llu; worst: error / allowed error; rad, turned: largest error of normals with a bound, and of "
+      "others (checks.hpp)\n",
       static_cast<unsigned long long>(arguments.options.seed));
   print_heading();
   for (const char* cutter : cutter_names()) {

@@ -81,7 +81,7 @@ class CarvingSession {
     if (p.empty() && options_.compare_every > 0 && random.one_in(options_.compare_every)) {
       const Comparison c = compare_with_reference(random, stage_, move, before, volume_, options_.compared_rays);
       ++tally.compared, tally.ends += c.ends, tally.points += c.points;
-      tally.normals += c.normals, tally.off_normals += c.off_normals;
+      tally.normals += c.normals;
       tally.worst = std::max(tally.worst, c.worst);
       tally.worst_normal = std::max(tally.worst_normal, c.worst_normal);
       tally.turned = std::max(tally.turned, c.turned);
@@ -174,7 +174,7 @@ std::uint64_t stream_of(const std::string& cutter) {
 
 Tally& Tally::operator+=(const Tally& o) {
   moves += o.moves, compared += o.compared, ends += o.ends, points += o.points, failures += o.failures;
-  normals += o.normals, off_normals += o.off_normals;
+  normals += o.normals;
   worst = std::max(worst, o.worst);
   worst_normal = std::max(worst_normal, o.worst_normal), turned = std::max(turned, o.turned);
   return *this;

@@ -32,10 +32,9 @@ struct Failure {
 };
 
 struct Tally {
-  long moves = 0, compared = 0, ends = 0, points = 0, failures = 0;
-  long normals = 0, off_normals = 0;    ///< compared; of straight moves, off by more than 1e-4 rad on a smooth surface
+  long moves = 0, compared = 0, ends = 0, points = 0, normals = 0, failures = 0;
   double worst = 0;                     ///< error / allowed error
-  double worst_normal = 0, turned = 0;  ///< rad: largest error of a normal after a straight and a turning move
+  double worst_normal = 0, turned = 0;  ///< rad: largest error of normals with a bound (checks.hpp), and of others
   Tally& operator+=(const Tally& o);
 };
 

@@ -138,7 +138,9 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
     for (int i = 0; i < 3; ++i)
       sums_.direction[i][slot] += length * direction[i], sums_.moment[i][slot] += length * moment[i];
   };
-  const auto origin = [&](double t) { return window_.step + std::round(t / Origins::kUnit) * Origins::kUnit; };
+  const auto origin = [&](double t) {  // as origin_at of the kernels (lanes/cut_lanes-inl.hpp)
+    return window_.step + std::round(std::clamp(t, 0.0, 1.0) / Origins::kUnit) * Origins::kUnit;
+  };
   // The new near end is at the far end of the cut.
   if (!rays_.subtract(ray, {cut.near, cut.far}, {origin(cut.far_t), origin(cut.near_t)}, removed)) return;
   ++window_.changed;

@@ -77,11 +77,13 @@ HWY_INLINE void add_removed(RayWindow& w, double u, const Group& g, M mask, V lo
   }
 }
 
-/// Origins of new ends (open_tile.hpp) that arise at the motion's time t.
+/// Origins of new ends (open_tile.hpp) that arise at the motion's time t. On a move as short as rounding, t may lie far
+/// outside of 0 … 1.
 HWY_INLINE V origin_at(const RayWindow& w, V t) {
   if (!w.with_times) return t;
   const V whole = set(1.5 * (1ULL << 52) * Origins::kUnit);  // adding it rounds to multiples of the unit
-  return hn::Add(hn::Sub(hn::Add(t, whole), whole), set(w.step));
+  const V during = min(max(t, zero()), set(1));
+  return hn::Add(hn::Sub(hn::Add(during, whole), whole), set(w.step));
 }
 
 /// What a cut leaves of one span of each ray.

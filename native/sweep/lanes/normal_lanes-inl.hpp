@@ -23,17 +23,18 @@ HWY_INLINE Across choose(M m, const Across& yes, const Across& no) {
   return {pick(m, yes.out, no.out), pick(m, yes.up, no.up)};
 }
 
-/// The two surfaces of a group nearest to the points of its half-plane: their normals and distances.
+/// The two surfaces of a group nearest to the points of its half-plane: their normals and distances, and the curvature
+/// of the nearest one's profile.
 struct Nearest {
   Across normal, second;
-  V off, second_off;
+  V off, second_off, bend;
 
-  HWY_INLINE void add(const Across& n, V aside, V past) {
+  HWY_INLINE void add(const Across& n, V aside, V past, double curvature) {
     const V distance = sqrt(hn::Add(hn::Mul(aside, aside), hn::Mul(past, past)));
     const M nearer = hn::Lt(distance, off), next = hn::Lt(distance, second_off);
     second = choose(nearer, normal, choose(next, n, second));
     second_off = pick(nearer, off, pick(next, distance, second_off));
-    normal = choose(nearer, n, normal), off = pick(nearer, distance, off);
+    normal = choose(nearer, n, normal), off = pick(nearer, distance, off), bend = pick(nearer, set(curvature), bend);
   }
 };
 
@@ -44,7 +45,7 @@ HWY_INLINE V beyond(V x, double low, double high) {
 
 HWY_INLINE Nearest nearest(const SweptSurface& surface, V rho, V z) {
   const Across up{zero(), set(1)};
-  Nearest out{up, up, set(kInfinity), set(kInfinity)};
+  Nearest out{up, up, set(kInfinity), set(kInfinity), zero()};
   for (std::size_t k = 0; k < surface.count; ++k) {
     const PieceShape& s = surface.pieces[k];
     const V past = beyond(z, s.z0, s.z1);
@@ -53,13 +54,13 @@ HWY_INLINE Nearest nearest(const SweptSurface& surface, V rho, V z) {
       const V length = sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
       const M good = hn::Gt(length, zero());
       const V whole = pick(good, length, set(1));
-      out.add({pick(good, hn::Div(x, whole), set(1)), hn::Div(y, whole)}, hn::Sub(length, set(s.r)), past);
+      out.add({pick(good, hn::Div(x, whole), set(1)), hn::Div(y, whole)}, hn::Sub(length, set(s.r)), past, 1 / s.r);
     } else {
       const V wall = hn::Add(set(s.r0), hn::Mul(set(s.slope), hn::Sub(z, set(s.z0))));
-      out.add({set(s.cosine), set(-s.slope * s.cosine)}, hn::Mul(hn::Sub(rho, wall), set(s.cosine)), past);
+      out.add({set(s.cosine), set(-s.slope * s.cosine)}, hn::Mul(hn::Sub(rho, wall), set(s.cosine)), past, 0);
     }
-    if (k == 0 && s.cut0) out.add({zero(), set(-1)}, hn::Sub(z, set(s.z0)), beyond(rho, 0, s.r0));
-    if (k + 1 == surface.count && s.cut1) out.add({zero(), set(1)}, hn::Sub(z, set(s.z1)), beyond(rho, 0, s.r1));
+    if (k == 0 && s.cut0) out.add({zero(), set(-1)}, hn::Sub(z, set(s.z0)), beyond(rho, 0, s.r0), 0);
+    if (k + 1 == surface.count && s.cut1) out.add({zero(), set(1)}, hn::Sub(z, set(s.z1)), beyond(rho, 0, s.r1), 0);
   }
   return out;
 }
@@ -101,14 +102,20 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   const V square = dot(velocity, velocity), speed = sqrt(square), slide = dot(n, velocity);
   const V rounding = set(1e-9);
   const M still = hn::Not(hn::Gt(abs(slide), zero()));
-  const M ends_there = either(either(hn::Le(t, rounding), hn::Ge(t, hn::Sub(set(1), rounding))), still);
-  if (none(hn::Not(ends_there))) return n;
-  // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
-  // sides. On a smooth side, t is nearly right; remove what remains of n · v.
+  const M starts = hn::Le(t, rounding), stops = hn::Ge(t, hn::Sub(set(1), rounding));
   // t is a multiple of 2⁻³⁰, so on a long move a point on an edge is a little off both sides.
   const V size = hn::Add(hn::Add(rho, abs(z)), hn::Mul(set(2), speed));
   const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, size)));
   const V3 second = in_space(at.second);
+  const V second_slide = dot(second, velocity);
+  // The swept surface faces backwards where the move starts, forwards where it stops. On an edge one side may not.
+  const M unseen = either(both(starts, both(hn::Gt(slide, zero()), hn::Le(second_slide, zero()))),
+                          both(stops, both(hn::Lt(slide, zero()), hn::Ge(second_slide, zero()))));
+  const V3 at_end = choose(both(close, unseen), second, n);
+  const M ends_there = either(either(starts, stops), still);
+  if (none(hn::Not(ends_there))) return at_end;
+  // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
+  // sides.
   const V3 around{hn::Sub(hn::Mul(axis.y, aside.z), hn::Mul(axis.z, aside.y)),
                   hn::Sub(hn::Mul(axis.z, aside.x), hn::Mul(axis.x, aside.z)),
                   hn::Sub(hn::Mul(axis.x, aside.y), hn::Mul(axis.y, aside.x))};
@@ -125,11 +132,28 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   // smoothly both do; there `swept` may consist of rounding, and then it is not between them.
   const V least = hn::Sub(dot(n, second), rounding);
   const M inside = both(hn::Ge(dot(turned, n), least), hn::Ge(dot(turned, second), least));
-  const M slides = hn::Lt(hn::Mul(slide, dot(second, velocity)), hn::Mul(rounding, square));
+  const M slides = hn::Lt(hn::Mul(slide, second_slide), hn::Mul(rounding, square));
   const M edge = both(both(close, slides), inside);
+  if (b.angle == 0) {
+    // On a smooth side n · v is not 0 because t is rounded. The normal turns by S v per unit of t, where S is the
+    // side's shape operator: follow it to where n · v = 0. Ends on other places than edges arise at t = 0 and 1, and on
+    // a move as short as rounding anywhere between.
+    const V meridian = dot(velocity, in_space({hn::Neg(at.normal.up), at.normal.out}));
+    const V ring = hn::Div(dot(velocity, around), whole);
+    const V turn_m = hn::Mul(at.bend, meridian);
+    const V turn_r = hn::Mul(pick(off_axis, hn::Div(at.normal.out, whole), at.bend), ring);
+    const V rate = hn::Add(hn::Mul(turn_m, meridian), hn::Mul(turn_r, ring));
+    const V late = hn::Add(hn::Mul(rounding, square), hn::Mul(set(1e-13), hn::Mul(size, speed)));  // 2 δt v²
+    const M smooth = without(hn::Le(hn::Mul(abs(slide), square), hn::Mul(late, rate)), edge);
+    const V delay = hn::Div(slide, pick(hn::Gt(rate, zero()), rate, set(1)));
+    const V3 moved = unit(less(less(n, hn::Mul(delay, turn_m), in_space({hn::Neg(at.normal.up), at.normal.out})),
+                               hn::Div(hn::Mul(delay, turn_r), whole), around));
+    return choose(ends_there, at_end, choose(edge, turned, choose(smooth, moved, n)));
+  }
+  // On a smooth side of a turning move, t is nearly right; remove what remains of n · v.
   const M smooth = without(hn::Le(abs(slide), hn::Mul(set(0.15), speed)), edge);
   const V3 level = unit(less(n, hn::Div(slide, pick(still, set(1), square)), velocity));
-  return choose(ends_there, n, choose(smooth, level, turned));
+  return choose(ends_there, at_end, choose(smooth, level, turned));
 }
 
 /// The octahedral map (span.hpp) of the normals out of the material, in the world.

@@ -102,6 +102,37 @@ TEST(StressChecks, TheReferenceFindsASliverLeftBehindAndOneTaken) {
   EXPECT_NE(compared(kTurning, taken).problem, "");
 }
 
+/// `volume` with all normals turned by some angle about z.
+Volume with_turned_normals(const Volume& volume, double angle) {
+  Volume out = volume;
+  for (dexel::Grid& grid : out.grids())
+    for (std::size_t t = 0; t < grid.tile_count(); ++t) {
+      const dexel::Tile& tile = grid.tile(t);
+      dexel::TileBuilder builder(true);
+      const auto turned = [&](const dexel::PackedNormal& packed) {
+        const Vec3 n = packed.unpack();
+        return dexel::PackedNormal::pack(
+            {n.x * std::cos(angle) - n.y * std::sin(angle), n.x * std::sin(angle) + n.y * std::cos(angle), n.z});
+      };
+      for (int r = 0; r < dexel::kTileRays; ++r) {
+        for (std::size_t k = 0; k < tile.ray(r).size(); ++k)
+          builder.add(tile.ray(r)[k], {turned(tile.ray_normals(r)[k].near), turned(tile.ray_normals(r)[k].far)});
+        builder.next_ray();
+      }
+      grid.set_tile(t, builder.finish());
+    }
+  out.touch();
+  return out;
+}
+
+TEST(StressChecks, TheReferenceFindsNormalsThatAreOff) {
+  const Volume after = carved(kStraight);
+  EXPECT_EQ(compared(kStraight, with_turned_normals(after, 0)).problem, "");
+  for (const double angle : {3e-4, -3e-4, 0.1, 1.5})
+    EXPECT_NE(compared(kStraight, with_turned_normals(after, angle)).problem.find("normal"), std::string::npos)
+        << angle;
+}
+
 TEST(StressChecks, SpansOutOfOrderAreFound) {
   const Volume block = Volume::block(stage().frame);
   const double nan = std::nan("");

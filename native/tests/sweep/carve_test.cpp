@@ -422,6 +422,54 @@ TEST(Carve, NormalsWhereABallBecomesItsShankAreThoseOfBoth) {
   EXPECT_EQ(ends, 2 * 24 * 8);
 }
 
+/// On a move as short as rounding, the time at which an end arises is rounding, too.
+TEST(Carve, NormalsAfterAMoveAsShortAsRoundingAreThoseOfAToolAtRest) {
+  const dexel::Frame frame{{{0, 0, 0}, {14, 9, 6.5}}, 0.5, "xyz"};
+  const Vec3 axis{0.26333153762116751, -0.30169841442196088, 0.91631575782005759};
+  const Pose from{{8.194890860363348, 4.81873976625797329, 2.0908207558097205}, axis};
+  const Tool disc = cutters::flat(6, 0.06);
+  Volume still = Volume::block(frame);
+  carve(still, disc, std::vector<Pose>{from, from});
+  int ends = 0;
+  for (const double way : {1e-13, 1e-11, 1e-9, 1e-8})
+    for (const Vec3& direction : {Vec3(0, 0, 1), unit(5, 0.2, 0.6), unit(-1, 2, 1), axis}) {
+      Volume moved = Volume::block(frame);
+      carve(moved, disc, std::vector<Pose>{from, {from.tip + way * direction, axis}});
+      for (std::size_t g = 0; g < 3; ++g)
+        for (int i = 0; i < still.grids()[g].nu(); ++i)
+          for (int j = 0; j < still.grids()[g].nv(); ++j) {
+            const auto a = still.grids()[g].ray(i, j), b = moved.grids()[g].ray(i, j);
+            if (a.size() != 2 || b.size() != 2) continue;
+            const auto at_rest = still.grids()[g].ray_normals(i, j), after = moved.grids()[g].ray_normals(i, j);
+            for (const auto& [x, y] : {std::pair{at_rest[0].far, after[0].far}, {at_rest[1].near, after[1].near}}) {
+              if (std::abs(glm::dot(x.unpack(), axis)) < 0.999) continue;  // the wall
+              EXPECT_LT(glm::length(x.unpack() - y.unpack()), 1e-4) << way << ", grid " << g << ": " << i << ", " << j;
+              ++ends;
+            }
+          }
+    }
+  EXPECT_GT(ends, 4000);
+}
+
+/// Rays in the plane of a flat end where its move starts meet its rim there, an edge of two sides, one of which the
+/// move covers at once.
+TEST(Carve, NormalsWhereAMoveStartsFaceBackwards) {
+  Volume volume = Volume::block({{{0, 0, 0}, {12, 12, 12}}, 0.5, "xyz"});
+  const Tool tool = cutters::flat(6, 30);
+  const Vec3 axis{-1, 0, 0}, way{0.9, 0, 0.45};
+  carve(volume, tool, std::vector<Pose>{{{6.25, 6.25, 6}, axis}, {Vec3(6.25, 6.25, 6) + way, axis}});
+  const dexel::Grid& grid = volume.grids()[2];
+  int ends = 0;
+  for (int j = 0; j < grid.nv(); ++j) {  // x = 6.25
+    const auto ray = grid.ray(12, j);
+    if (ray.size() != 2) continue;
+    const Vec3 out = -grid.ray_normals(12, j)[0].far.unpack();  // of the swept volume, where it begins
+    EXPECT_LT(glm::dot(out, way), 1e-4) << j;
+    ++ends;
+  }
+  EXPECT_GT(ends, 8);
+}
+
 TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
