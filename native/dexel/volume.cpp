@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "base/memory.hpp"
 #include "riffler/base/check.hpp"
 
 namespace riffler::dexel {
@@ -27,16 +26,6 @@ namespace {
 
 std::string sides(const Vec3& size) {
   return base::in_figures(size.x) + " × " + base::in_figures(size.y) + " × " + base::in_figures(size.z) + " mm";
-}
-
-/// 7280000000000 → "7.3 TB".
-std::string in_bytes(double count) {
-  const char* const units[] = {"bytes", "kB", "MB", "GB", "TB"};
-  std::size_t unit = 0;
-  for (; count >= 999.5 && unit + 1 < std::size(units); count /= 1000) ++unit;
-  char out[64];
-  std::snprintf(out, sizeof out, unit == 0 || count >= 99.95 ? "%.0f %s" : "%.1f %s", count, units[unit]);
-  return out;
 }
 
 double longest(const Vec3& size) {
@@ -77,8 +66,8 @@ void check(const Frame& frame) {
                                 "take a coarser pitch, or move the box to the origin");
   const double bytes = estimated_bytes(frame), free = available_memory();
   if (bytes > free || longest(size) > 1e9 * pitch)
-    throw std::invalid_argument("pitch " + base::in_figures(pitch) + " mm needs " + in_bytes(bytes) +
-                                " for the rays of this box, " + sides(size) + ", and " + in_bytes(free) +
+    throw std::invalid_argument("pitch " + base::in_figures(pitch) + " mm needs " + base::in_bytes(bytes) +
+                                " for the rays of this box, " + sides(size) + ", and " + base::in_bytes(free) +
                                 " are free: take a coarser pitch or a smaller box");
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/memory.hpp"
 #include "base/sort_unique.hpp"
 #include "riffler/base/parallel.hpp"
 
@@ -72,10 +73,23 @@ std::vector<QuadRef> MeshState::quads_to_look_at(const std::vector<std::size_t>&
   return quads;
 }
 
+/// Refuses a mesh that does not fit in the free memory, before anything of it is allocated.
+void MeshState::check_memory() const {
+  constexpr double kUnchecked = 5e8;  // bytes that are asked for without a look
+  const auto more = [](const auto& vector, std::size_t size) {
+    return size > vector.size() ? static_cast<double>(size - vector.size()) * sizeof vector[0] : 0.0;
+  };
+  const double bytes = more(surface.mesh.vertices, vertices_.end()) + more(surface.marks, vertices_.end()) +
+                       more(surface.mesh.triangles, 2 * quads_.end());
+  if (bytes > kUnchecked)
+    base::require_memory(bytes, dexel::available_memory(), "the mesh of this volume", "take a coarser pitch");
+}
+
 void MeshState::give_room() {
   if (quads_.end() > std::numeric_limits<std::int32_t>::max() / 2 ||
       vertices_.end() > std::numeric_limits<std::int32_t>::max())
     throw std::invalid_argument("the mesh of this volume would have more than 2^31 triangles; take a coarser pitch");
+  check_memory();
   // Growing a vector copies it, which would delay a stroke.
   const auto resize = [&](auto& vector, std::size_t size) {
     if (size <= vector.size()) return;

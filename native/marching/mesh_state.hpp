@@ -49,6 +49,7 @@ struct MeshState {
   void read_signs_again(const std::vector<std::size_t>& changed);
   void place_again(std::size_t brick);
   void give_place(ActiveBrick& brick);
+  void check_memory() const;
   void give_room();
   std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
   /// A brick next to changed ones: the previous places of its vertices that had a choice or were pulled, and the cells
