@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from riffler import Mesh, Tool, Verification, VerifyReport, Volume, plan, verify
 
-from . import scenes, torus, waves
+from . import parts, scenes, torus, waves
 from .rivals import clock
 
 
@@ -113,15 +113,15 @@ def alternated(calls: dict[str, Any], repeats: int) -> tuple[dict[str, Mesh], di
     }
 
 
-def rays(path: str, side: int, repeats: int) -> dict[str, Any]:
-    """A part to side² rays along z: median times, and the volume."""
+def rays(path: str, side: int, repeats: int, directions: str = "z") -> dict[str, Any]:
+    """A part to rays, side² of them along z: median times, their number, and the volume."""
     part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
     low, high = np.asarray(part.bounds)
     pitch = (high - low)[:2].max() / side
     middle, half = (low + high) / 2, np.array([pitch * side / 2, pitch * side / 2, (high - low)[2] / 2 + pitch])
     box = {"lower": middle - half, "upper": middle + half}
-    volume, times = clock.timed(lambda: Volume.from_mesh(part, pitch, "z", **box), repeats)
-    return {**times, "volume": volume.volume}
+    volume, times = clock.timed(lambda: Volume.from_mesh(part, pitch, directions, **box), repeats)
+    return {**times, "volume": volume.volume, "count": volume.rays}
 
 
 def decimate(path: str, wanted: int, repeats: int) -> dict[str, Any]:
@@ -172,6 +172,41 @@ def s500k(moves: int, ramping: bool, directions: str = "z") -> dict[str, Any]:
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     removed = float(cut.removed.sum())
     return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
+
+
+def on_cores(job: str, quick: bool) -> dict[str, Any]:
+    """A job of `jobs.threads`: its wall time, and the processor time of all threads and of the calling one."""
+    call = prepared(job, quick)
+    wall, cpu, own = time.perf_counter(), time.process_time(), time.thread_time()
+    call()
+    return {
+        "wall_s": time.perf_counter() - wall,
+        "cpu_s": time.process_time() - cpu,
+        "caller_s": time.thread_time() - own,
+    }
+
+
+def prepared(job: str, quick: bool) -> Any:
+    kind, _, directions = job.partition(", ")
+    if kind in ("level", "ramping"):
+        moves, volume = 20_000 if quick else 500_000, Volume.block(*scenes.S500K_BLOCK, 0.5, directions)
+        poses, tool = scenes.s500k(moves, kind == "ramping"), Tool.flat(6, 30)
+        return lambda: volume.carve(tool, poses)
+    if kind in ("three axes", "five axes"):
+        rows = 3_000 if quick else 200_000
+        program = waves.program(rows, round(rows**0.5), kind == "five axes")
+        stock = waves.stock(0.2, directions)
+        return lambda: verify(program, stock)
+    if kind == "from_mesh":
+        part = parts.organic(20_000 if quick else 1_000_000)
+        pitch = float(np.ptp(np.asarray(part.bounds), axis=0).max()) / (64 if quick else 1024)
+        return lambda: Volume.from_mesh(part, pitch, directions)
+    volume = Volume.block(*scenes.BLOCK, 0.5 if quick else 0.1, "xyz")
+    volume.carve(scenes.cutters()[0].tool, scenes.cutters()[0].path(turning=False))
+    if kind == "decimate":
+        mesh = volume.to_mesh(tolerance=0.0025)
+        return lambda: mesh.decimate(tolerance=0.0025)
+    return {"to_mesh()": volume.to_mesh, "to_mesh(0.005)": lambda: volume.to_mesh(tolerance=0.005)}[kind]
 
 
 def verified(
@@ -276,6 +311,7 @@ WORK = {
     "surfaces": torus.measured,
     "s500k": s500k,
     "streamed": streamed,
+    "on_cores": on_cores,
     "verified": verified,
     "verified_both": verified_both,
     "verified_stream": verified_stream,

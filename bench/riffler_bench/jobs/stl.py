@@ -58,12 +58,13 @@ def run(settings: Settings, progress: Progress = None) -> Report:
 def rays(out: Report, settings: Settings, progress: Progress) -> None:
     table = out.section(
         "rays",
-        "Closed parts to rays along z, one thread",
+        "Closed parts to rays, one thread",
         Column("part", "part"),
         Column("triangles", "triangles", report.mega),
         Column("rays", "side", lambda n: f"{n}²"),
         Column("engine", "engine"),
         Column("processor time", "cpu_s", report.micro),
+        Column("÷ z", "ratio", report.ratio),
         Column("of it before the first ray", "build_s", report.micro),
         Column("rays or points a second", "rate", report.mega),
         Column("odd rays", "odd"),
@@ -113,7 +114,11 @@ def cast(part: str, mesh: Mesh, settings: Settings, path: str) -> list[dict[str,
     rows = []
     for side in sides:
         figures = child("rays", path=path, side=side, repeats=3)
-        rows.append({"engine": "Riffler", "side": side, "rate": side**2 / figures["cpu_s"], **figures})
+        rows.append({"engine": "Riffler", "side": side, "rate": figures["count"] / figures["cpu_s"], **figures})
+        if side == beside:
+            three = child("rays", path=path, side=side, repeats=3, directions="xyz")
+            ratio, rate = three["cpu_s"] / figures["cpu_s"], three["count"] / three["cpu_s"]
+            rows.append({"engine": "Riffler, xyz", "side": side, "rate": rate, "ratio": ratio, **three})
     for engine, work, side in (
         ("open3d", "open3d", beside),
         ("trimesh with Embree", "trimesh", beside),
