@@ -121,10 +121,14 @@ class RayComparison {
   /// surface are about equally near, they do not. Outside an edge the distance is smooth, and any normal between those
   /// of both sides passes.
   std::optional<NormalError> normal_error(double end, const Vec3& normal, double step) const {
-    const Vec3 p = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), end}) - 3 * step * normal;
+    const Vec3 at = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), end}), p = at - 3 * step * normal;
     const Vec3 a = gradient(p, step), b = gradient(p, step / 2);
     if (std::abs(glm::length(a) - 1) > 1e-5 || glm::length(a - b) > 2e-5) return {};
     const double error = glm::length(glm::normalize(b) + normal);
+    // On a ridge of the material, each side's normal leads to where the other side is nearer.
+    if (error > rules_.normal(radius_) &&
+        swept_.bracket(at + 3 * step * glm::normalize(b), 1e-5 * step).upper < 2.997 * step - allowed_)
+      return {};
     const bool curved = rules_.hollow > 0 && error > rules_.normal(radius_);
     return NormalError{error, rules_.normal(curved ? 1 / curvature(p, step) : radius_)};
   }

@@ -75,8 +75,16 @@ HWY_INLINE V3 axis_at(const SweptSurface& b, const SweptEnds& ends, std::size_t 
   return {at(0), at(1), at(2)};
 }
 
-/// The outward unit normal of the swept volume.
-HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::size_t k) {
+/// The unit vector of `a`, which is square to the axis; any that is if the square of `a` is at most `least`.
+HWY_INLINE V3 square_to(const V3& axis, const V3& a, V least) {
+  const M flat = hn::Lt(abs(axis.x), set(0.5));
+  const V3 any{zero(), pick(flat, axis.z, zero()), pick(flat, hn::Neg(axis.y), zero())};
+  const V3 other{hn::Neg(axis.z), zero(), axis.x};
+  return choose(hn::Gt(dot(a, a), least), unit(a), unit(choose(flat, any, other)));
+}
+
+/// The outward unit normal of the swept volume. `on_axis`: mm from the axis, where a point counts as on it.
+HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::size_t k, double on_axis) {
   const V t = hn::LoadU(kD, &ends.t[k]);
   const V3 axis = axis_at(b, ends, k, t);
   const auto from_tip = [&](const auto& p, int i) {
@@ -86,19 +94,22 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   const V z = dot(w, axis);
   const V3 aside = less(w, z, axis);
   const V rho = sqrt(dot(aside, aside));
-  const M off_axis = hn::Gt(rho, zero());
-  // On the axis any direction will do.
-  const double any[3] = {std::abs(b.axis[0]) < 0.5 ? 1.0 : 0.0, std::abs(b.axis[0]) < 0.5 ? 0.0 : 1.0, 0};
+  const V3 back = cross(w, b.spin);
+  const V3 velocity{hn::Sub(set(b.way[0]), back.x), hn::Sub(set(b.way[1]), back.y), hn::Sub(set(b.way[2]), back.z)};
+  // On the axis, such as at a cone's apex, the tool has sides all around. Backwards where the move starts, forwards
+  // where it stops, they are not covered.
+  const M off_axis = hn::Gt(rho, set(on_axis));
   const V whole = pick(off_axis, rho, set(1));
+  const V3 ahead = less(velocity, dot(velocity, axis), axis);
   const V3 radial = choose(off_axis, {hn::Div(aside.x, whole), hn::Div(aside.y, whole), hn::Div(aside.z, whole)},
-                           unit(cross(axis, any)));
+                           square_to(axis, scaled(ahead, pick(hn::Lt(t, set(0.5)), set(-1), set(1))),
+                                     hn::Mul(set(1e-16), dot(velocity, velocity))));
   const Nearest at = nearest(b, rho, z);
   const auto in_space = [&](const Across& n) {
     const V3 out = scaled(radial, n.out), up = scaled(axis, n.up);
     return V3{hn::Add(out.x, up.x), hn::Add(out.y, up.y), hn::Add(out.z, up.z)};
   };
-  const V3 n = in_space(at.normal), back = cross(w, b.spin);
-  const V3 velocity{hn::Sub(set(b.way[0]), back.x), hn::Sub(set(b.way[1]), back.y), hn::Sub(set(b.way[2]), back.z)};
+  const V3 n = in_space(at.normal);
   const V square = dot(velocity, velocity), speed = sqrt(square), slide = dot(n, velocity);
   const V rounding = set(1e-9);
   const M still = hn::Not(hn::Gt(abs(slide), zero()));
@@ -170,9 +181,12 @@ HWY_INLINE void map_normal(const V3& swept, int world, V& u, V& v) {
 }
 
 inline void normal_lanes(const SweptSurface& surface, SweptEnds& ends) {
+  double radius = 0;
+  for (std::size_t k = 0; k < surface.count; ++k)
+    radius = std::max({radius, surface.pieces[k].r0, surface.pieces[k].r1});
   for (std::size_t k = 0; k < ends.u.size(); k += static_cast<std::size_t>(lanes())) {
     V u, v;
-    map_normal(swept_normal(surface, ends, k), surface.world, u, v);
+    map_normal(swept_normal(surface, ends, k, 1e-9 * radius), surface.world, u, v);
     hn::StoreU(u, kD, &ends.map[0][k]), hn::StoreU(v, kD, &ends.map[1][k]);
   }
 }
