@@ -50,7 +50,7 @@ def two_cores(out: Report, settings: Settings, progress: Progress) -> None:
         Column("job", "job"),
         Column("processor time, 1 thread", "cpu_s", report.micro),
         Column("2 threads", "two_cpu_s", report.micro),
-        Column("calling thread alone, at most", "alone", report.percent),
+        Column("calling thread alone, at most", "alone", lambda share: f"{100 * share:.0f} %"),
         Column("two cores allow", "allowed", report.ratio),
         Column("wall time, 1 thread ÷ 2", "ratio", report.ratio),
         Column("cores free", "cores", report.three),
@@ -63,7 +63,7 @@ def two_cores(out: Report, settings: Settings, progress: Progress) -> None:
         alone = max(0.0, (MANY * many["caller_s"] - many["cpu_s"]) / (MANY - 1)) / many["cpu_s"]
         table.row(
             job=work, cpu_s=one["cpu_s"], two_cpu_s=two["cpu_s"], alone=alone,
-            allowed=one["cpu_s"] / two["cpu_s"] / (alone + (1 - alone) / 2), ratio=one["wall_s"] / two["wall_s"],
+            allowed=2 / (1 + alone), ratio=one["wall_s"] / two["wall_s"],
             cores=free,
         )  # fmt: skip
     table.notes.append(
