@@ -71,7 +71,7 @@ TEST(SweptSearch, SlidesInAFewStepsUnderAShankThatIsThinnerThanTheCutter) {
     const Motion along({centre - Vec3(15, 0, 0) - 3.0 * axis, axis}, {centre + Vec3(15, 0, 0) - 3.0 * axis, axis});
     const Swept check = plate.sweep(tool, along, -0.01, 100000);
     EXPECT_EQ(check.answer, Answer::Clear) << tilt;
-    EXPECT_LT(check.evaluations, 1000U) << tilt;
+    EXPECT_LT(check.evaluations, 5000U) << tilt;  // over 100 000 without the disc
   }
 }
 
