@@ -11,6 +11,7 @@
 #include "riffler/plan/finish.hpp"
 #include "riffler/plan/outline.hpp"
 #include "riffler/plan/rough.hpp"
+#include "riffler/plan/surface_fit.hpp"
 #include "riffler/sweep/carve.hpp"
 
 namespace riffler::bindings {
@@ -29,6 +30,7 @@ struct Planned {
   std::vector<std::pair<const char*, std::size_t>> counts;
   std::optional<double> engagement;
   std::vector<double> removed;
+  std::optional<plan::SurfaceFit> fit{};
 };
 
 PlannedMoves from_planned(Planned&& planned) {
@@ -41,11 +43,18 @@ PlannedMoves from_planned(Planned&& planned) {
     blocked.append(blocked_place(one.reason, from_vec3(one.place), one.length));
   py::dict stats;
   for (const auto& [name, count] : planned.counts) stats[name] = count;
-  return plan_result("operations", "PlannedMoves",
-                     py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
-                              "feed"_a = take<double>(std::move(found.feeds)),
-                              "removed"_a = take<double>(std::move(planned.removed)), "blocked"_a = py::tuple(blocked),
-                              "reason"_a = found.reason, "stats"_a = stats, "engagement"_a = planned.engagement));
+  py::object exact = py::none();
+  if (const auto& fit = planned.fit)
+    exact = plan_result(
+        "operations", "ExactFit",
+        py::dict("fitted"_a = fit->fitted, "inserted"_a = fit->inserted, "raised"_a = fit->raised, "kept"_a = fit->kept,
+                 "before"_a = fit->before, "after"_a = fit->after, "kept_depth"_a = fit->kept_depth));
+  return plan_result(
+      "operations", "PlannedMoves",
+      py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
+               "feed"_a = take<double>(std::move(found.feeds)), "removed"_a = take<double>(std::move(planned.removed)),
+               "blocked"_a = py::tuple(blocked), "reason"_a = found.reason, "stats"_a = stats,
+               "engagement"_a = planned.engagement, "exact"_a = exact));
 }
 
 std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays, const std::string& name) {
@@ -66,6 +75,22 @@ Planned planned(plan::FinishResult&& found) {
            {"drops", found.drops}},
           {},
           {}};
+}
+
+Planned planned(Planned&& found) {
+  return std::move(found);
+}
+
+using ColliderPtr = std::shared_ptr<collide::Collider>;
+
+/// Finishes, and moves the rows onto the exact surface if there is one.
+Planned finished(const plan::SetupScene& scene, const Tool& tool, const plan::FinishOptions& options,
+                 const ColliderPtr& exact, double deviation, const Progress& progress) {
+  if (!exact) return planned(plan::finish(scene, tool, options, progress));
+  Planned out = planned(plan::finish(scene, tool, options, base::part(progress, 0, 0.3)));
+  const plan::SurfaceFitRule rule{options.allowance, options.tolerance, deviation, options.pattern == "waterline"};
+  out.fit = plan::fit_to_surface(out.operation, tool, *exact, scene.fixtures, rule, base::part(progress, 0.3, 1));
+  return out;
 }
 
 Planned planned(plan::RoughResult&& found) {
@@ -144,7 +169,8 @@ void bind_operations(py::module_& m) {
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          const std::vector<int>& faces, const std::optional<ArrayLike>& centre, bool climb, double feed, double plunge,
          std::optional<double> lead, const std::optional<std::string>& rule, double ahead, double aside,
-         const ArrayLike& target, double max_tilt, double max_turn, const ProgressLike& progress) {
+         const ArrayLike& target, double max_tilt, double max_turn, const ColliderPtr& exact, double deviation,
+         const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.axes = to_rule(rule, ahead, aside, target, max_tilt, max_turn);
@@ -155,13 +181,13 @@ void bind_operations(py::module_& m) {
         if (centre) options.centre = to_vec3(*centre, "centre");
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
-                           return plan::finish(scene, tool, options, listener);
+                           return finished(scene, tool, options, exact, deviation, listener);
                          });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
       "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "faces"_a,
       "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "rule"_a, "ahead"_a, "aside"_a, "target"_a, "max_tilt"_a,
-      "max_turn"_a, "progress"_a, "For riffler.plan.finish.");
+      "max_turn"_a, "exact"_a, "deviation"_a, "progress"_a, "For riffler.plan.finish.");
   m.def(
       "rough",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,

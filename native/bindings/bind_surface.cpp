@@ -59,7 +59,7 @@ std::vector<std::vector<Vec2>> to_trims(const TrimsLike& object) {
 
 SurfacePtr read(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
   using namespace py::literals;
-  return py::module_::import("riffler.cad.surfaces")
+  return py::module_::import("riffler.cad.reading")
       .attr("read_surface")(path, "tolerance"_a = tolerance, "progress"_a = progress)
       .cast<SurfacePtr>();
 }

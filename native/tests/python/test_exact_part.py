@@ -74,6 +74,26 @@ def test_a_collider_has_the_exact_depth_and_refuses_others():
 
 
 @needs_occ
+def test_plans_of_a_file_are_on_its_exact_faces(files, tmp_path):
+    part = riffler.cad.read(files / "sphere.step", tolerance=0.05, exact=True)
+    assert part.surface is not None and riffler.cad.read(files / "sphere.step").surface is None
+    lower, upper = part.mesh.bounds
+    setup = riffler.plan.Setup(part, riffler.Volume.block(lower, upper + np.array([0, 0, 1]), 0.5))
+    assert 0.005 < setup.deviation < 0.06
+    region = [[(-3, -1, 0), (3, -1, 0), (3, 1, 0), (-3, 1, 0)]]
+    op = riffler.plan.finish(setup, riffler.Tool.ball(4, 30), cusp=0.05, tolerance=0.003, region=region, lead=0)
+    off = np.linalg.norm(op.poses[op.kind == 2, :3] + [0, 0, 2], axis=1) - 9
+    assert abs(off).max() < 1e-5 and op.report.exact.before > 0.003
+    command = [sys.executable, "-m", "riffler", "plan", "finish"]
+    more = ["--tool", "ball:4", "--cusp", "0.3", "--slopes", "0,30", "--exact", "--out", str(tmp_path / "a.ngc")]
+    done = subprocess.run([*command, str(files / "sphere.step"), *more], capture_output=True, text=True)
+    assert done.returncode == 0 and "on exact faces" in done.stdout + done.stderr, done.stderr
+    part.mesh.write(tmp_path / "a.stl")
+    done = subprocess.run([*command, str(tmp_path / "a.stl"), *more], capture_output=True, text=True)
+    assert done.returncode != 0 and "--exact: a.stl has triangles only" in done.stderr
+
+
+@needs_occ
 @pytest.mark.parametrize(
     ("name", "distance"),
     [

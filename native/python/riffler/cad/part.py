@@ -9,7 +9,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import Mesh
+from .._core import Mesh, Surface
 
 Color = tuple[float, float, float]
 
@@ -107,6 +107,8 @@ class CadPart:
     """The solids and sheets, in the order of their triangles."""
     report: CadReport
     """Report on how the file was read."""
+    surface: Surface | None = None
+    """The exact faces, as `Surface.read` returns them; None unless `riffler.cad.read` has ``exact=True``."""
 
     def find(self, name: str) -> NDArray[np.int64]:
         """Finds faces by name. Upper and lower case differ; ``*``, ``?`` and ``[…]`` match as in paths of files.

@@ -6,21 +6,24 @@ import math
 import os
 import re
 import stat
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .._core import FormatError
+from .._core import FormatError, Surface
 from ..arguments import Progress
 from ..hints import hinted
 from . import process
 from .part import CadPart
 from .placing import assemble
+from .surfaces import surface_of
 
 KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8, "micrometre": 0.001}
 TIMEOUT = 600.0  # s
+BORDERS = 1e-4  # mm: of exact faces, as in `Surface.read`
 MOST_FACES = 1_000_000
 MOST_TRIANGLES = 50_000_000
 FACES = re.compile(rb"(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
@@ -33,6 +36,7 @@ def read(
     path: str | os.PathLike[str],
     *,
     tolerance: float = 0.01,
+    exact: bool = False,
     unit: str | None = None,
     timeout: float = TIMEOUT,
     python: str | os.PathLike[str] | None = None,
@@ -50,6 +54,8 @@ def read(
     tolerance : float, mm
         Chord error: largest distance of the exact faces from their triangles. `CadReport.deviation` is the measured
         distance; it is not proven.
+    exact : bool
+        Also reads the exact faces, as `CadPart.surface`, in a second pass. `plan.Setup` then plans on them.
     unit : str, optional
         Unit of the file's numbers, instead of the unit that the file states: "mm", "cm", "m", "inch", "foot" or
         "micrometre".
@@ -85,10 +91,37 @@ def read(
     >>> part.mesh.audit().open_edges, part.report.closed, part.report.unit
     (0, True, 'inch')
     """
-    answer, arrays, schema = answer_to(
-        path, tolerance, unit=unit, timeout=timeout, python=python, progress=progress, surfaces=False
-    )
-    return assemble(answer, arrays, Path(path).name, schema, float(tolerance), unit)
+    name, before = Path(path).name, _stamp(path)
+    how: dict[str, Any] = {"unit": unit, "timeout": timeout, "python": python}
+    first = _share(progress, 0.0) if exact else progress
+    answer, arrays, schema = answer_to(path, tolerance, progress=first, surfaces=False, **how)
+    part = assemble(answer, arrays, name, schema, float(tolerance), unit)
+    if not exact:
+        return part
+    surface = read_surface(path, min(BORDERS, float(tolerance)), progress=_share(progress, 0.5), **how)
+    if _stamp(path) != before:
+        raise FormatError(f"{name}: the file has changed while it was read; read it again")
+    return replace(part, surface=surface)
+
+
+def read_surface(path: str | os.PathLike[str], tolerance: float, progress: Progress = None, **how: Any) -> Surface:
+    """What `Surface.read` returns; ``how``: further arguments of `answer_to`."""
+    answer, arrays, _ = answer_to(path, tolerance, progress=progress, surfaces=True, **how)
+    return surface_of(answer, arrays, Path(path).name)
+
+
+def _share(progress: Progress, first: float) -> Progress:
+    """The progress of one of two halves of a call."""
+    return None if progress is None else lambda share: progress(first + 0.5 * share)
+
+
+def _stamp(path: str | os.PathLike[str]) -> tuple[int, int] | None:
+    """Changes when the file does; None if there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
 
 
 def answer_to(

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .._core import FormatError, Surface
-from ..arguments import Progress
-from .reading import answer_to
 
 
-def read_surface(path: str | os.PathLike[str], tolerance: float, progress: Progress = None) -> Surface:
-    """What `Surface.read` returns."""
-    answer, arrays, _ = answer_to(path, tolerance, progress=progress, surfaces=True)
+def surface_of(answer: dict[str, Any], arrays: dict[str, np.ndarray], name: str) -> Surface:
+    """Makes the surface from the reader's answer: a copy of every prototype's faces in each of its places."""
     made = [_patches(arrays, k, p["patches"]) for k, p in enumerate(answer["prototypes"])]
     patches = []
     for instance in answer["instances"]:
         matrix = np.array(instance["matrix"], float)
         patches += [_placed(patch, matrix) for patch in made[instance["prototype"]]]
     if not patches:
-        raise FormatError(f"{Path(path).name}: none of its faces has an area; export it again, as AP214 or AP242")
+        raise FormatError(f"{name}: none of its faces has an area; export it again, as AP214 or AP242")
     return Surface(patches)
 
 

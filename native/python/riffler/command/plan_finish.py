@@ -3,6 +3,7 @@
 riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
 riffler plan finish part.stl --tool ball:6 --pattern waterline --slopes 30,90 --out walls.ngc
 riffler plan finish part.stl --tool ball:6 --orientation normal --post tcp --out five-axes.ngc
+riffler plan finish part.step --tool ball:6 --exact --out part.ngc
 riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
 
 The default stock is the part's box with the allowance on top. The program is simulated on the stock before it is
@@ -19,7 +20,18 @@ from .. import plan
 from .arguments import finite, input_file, length
 from .console import Console, number
 from .parser import Parser
-from .plan_operation import add_lead, add_lengths, add_scene, add_tool, feeds_of, lead_of, point, rule_of, run_operation
+from .plan_operation import (
+    add_exact,
+    add_lead,
+    add_lengths,
+    add_scene,
+    add_tool,
+    feeds_of,
+    lead_of,
+    point,
+    rule_of,
+    run_operation,
+)
 
 HELP = "finish a part in rows, as NC code"
 
@@ -47,6 +59,7 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_lead(parser)
+    add_exact(parser)
     parser.add_argument("--rest", metavar="MM", help="finish only where more material than this stands")
     add_scene(
         parser,

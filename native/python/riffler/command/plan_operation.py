@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from .. import Mesh, Tool, Volume, plan
+from ..cad import CadPart
 from ..formats import PARTS
 from . import tools
 from .arguments import A_PART, CODE, PROGRAMS, finite, input_file, is_solid, length, output_file
 from .console import Console, number, times
 from .parser import Parser
 from .programs import machine_name
-from .shapes import read_part
+from .shapes import read_exact, read_part
 from .stock import stock as read_stock
 from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
@@ -37,6 +39,10 @@ def add_lead(parser: Parser) -> None:
     parser.add_argument(
         "--lead", metavar="MM", help="radius of arcs into cuts and out of them (default half the cutter's radius)"
     )
+
+
+def add_exact(parser: Parser) -> None:
+    parser.add_argument("--exact", action="store_true", help="take contacts from the CAD file's exact faces")
 
 
 def lead_of(arguments: argparse.Namespace) -> float | None:
@@ -88,12 +94,13 @@ def run_operation(
     post = machine_name(arguments.post, "--post")
     asked = tools.parse(arguments.tool)
     with console.step("read"):
-        part = read_part(path, console)
+        whole = read_exact(path, console) if getattr(arguments, "exact", False) else read_part(path, console)
+    part = whole.mesh if isinstance(whole, CadPart) else whole
     lower, upper = part.bounds
     tool = with_rods({1: asked.make(float(max(upper - lower)))}, [(what, None, c) for what, _, c in rods(arguments)])[1]
     stock = stock_of(arguments, part, allowance, console)
     setup = plan.Setup(
-        part,
+        whole,
         stock,
         [fixture(name, console, stock.pitch) for name in arguments.fixture],
         clearance=length(arguments.clearance, "--clearance"),
@@ -193,7 +200,16 @@ def summary(op: plan.Operation) -> dict[str, Any]:
         "largest_engagement": report.largest_engagement,
         "blocked": blocked,
         "stats": dict(report.stats),
+        "exact": None if report.exact is None else asdict(report.exact),
     }
+
+
+def _exact(fit: dict[str, Any] | None) -> list[tuple[str, str]]:
+    if fit is None:
+        return []
+    error = f"{number(fit['before'], 'mm')} off before, {number(fit['after'], 'mm')} after"
+    rest = f"; {number(fit['raised'])} raised, {number(fit['kept'])} kept as on the triangles"
+    return [("on exact faces", f"{number(fit['fitted'])} points, {error}{rest}")]
 
 
 def _links(stats: dict[str, Any]) -> list[tuple[str, str]]:
@@ -207,6 +223,7 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
         ("points", number(data["poses"])),
         ("cut", f"{number(data['cut_mm'], 'mm')}, {number(data['air_mm'], 'mm')} at feed in air"),
         *_links(data["stats"]),
+        *_exact(data["exact"]),
         ("time", number(data["time_s"] / 60, "min")),
         *(("blocked", f"{number(b['length'], 'mm')}: {b['reason']}") for b in data["blocked"]),
         ("file", number(data["bytes"], "bytes")),

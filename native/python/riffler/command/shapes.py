@@ -45,6 +45,18 @@ def from_mesh(
     return volume, report
 
 
+def read_exact(path: Path, console: Console) -> cad.CadPart:
+    """The part of a CAD file with its exact faces; prints what was mended and assumed of it."""
+    if path.suffix.lower() not in cad.EXTENSIONS:
+        raise ValueError(
+            f"--exact: {path.name} has triangles only; give a file that ends with {', '.join(cad.EXTENSIONS)}"
+        )
+    part = cad.read(path, exact=True)
+    for note in part.report.notes:
+        console.warning(f"{path.name}: {note}")
+    return part
+
+
 def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
     """The mesh of a file, unchanged, because plans identify a part by its checksum. Prints what riffler turns to use
     the mesh as a solid."""

@@ -26,7 +26,7 @@ from .locations import (
     poses_of,
 )
 from .model import Plan, part_of
-from .operations import Blocked, Operation, OperationReport
+from .operations import Blocked, ExactFit, Operation, OperationReport
 from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
 from .outlining import outline
 from .path_order import order_paths
@@ -48,6 +48,7 @@ __all__ = [
     "Blocked",
     "BlockedPoint",
     "Engraved",
+    "ExactFit",
     "Found",
     "FreeOrientations",
     "LiftReport",

@@ -52,6 +52,10 @@ def finish(
     further ones between them where the part is steep or curved, or has a border. Rows end where the tool leaves the
     part: a wall without a floor next to it needs an outline.
 
+    If the set-up has an exact surface, the rows are planned on the triangles and then moved onto the exact surface,
+    along the tool's axis or, on steep faces, square to it, and divided until the middle of each move is within the
+    tolerance. ``report.exact`` has the distances before and after. Rules for axes that change are then refused.
+
     Parameters
     ----------
     setup : Setup
@@ -131,6 +135,11 @@ def finish(
         setup = setup.along(orientation)  # type: ignore[arg-type]
     else:
         require_rotary(setup)
+        if setup.exact is not None:
+            raise ValueError(
+                "orientation: rules for axes that change plan on triangles; make the set-up from the part's mesh, "
+                "without its exact surface"
+            )
     low, high = (float(x) for x in slopes)
     curves, faces = _region_of(region, len(setup.part.triangles))
     if rest is None and reference_tool is not None:
@@ -165,6 +174,8 @@ def finish(
         plunge=feed / 3 if plunge is None else plunge,
         lead=lead,
         **rule_arguments(rule, max_tilt, max_turn),
+        exact=setup.exact_collider,
+        deviation=setup.deviation,
         progress=progress,
     )
 

@@ -33,6 +33,37 @@ class Blocked:
     length: float
 
 
+@dataclass(frozen=True)
+class ExactFit:
+    """How a finishing operation was moved from the triangles onto the exact surface: see `OperationReport`.
+
+    Attributes
+    ----------
+    fitted : int
+        Number of poses at which the tool touches the exact surface.
+    inserted : int
+        Number of poses added between those that were planned on triangles.
+    raised : int
+        Number of poses without such a place near them: raised until the tool is free.
+    kept : int
+        Number of poses left as they were, because no place near them is free or touches.
+    before : float
+        Largest distance of the tool from its place at a fitted pose, as planned on triangles, mm.
+    after : float
+        The same after the fit, also in the middles of moves, mm.
+    kept_depth : float
+        Largest depth of the tool in the exact surface at a kept pose, mm.
+    """
+
+    fitted: int
+    inserted: int
+    raised: int
+    kept: int
+    before: float
+    after: float
+    kept_depth: float
+
+
 @dataclass(frozen=True, eq=False)
 class OperationReport:
     """Times and lengths of an operation: see `Operation`.
@@ -52,6 +83,8 @@ class OperationReport:
     stats : dict
         Counts: direct links, retracts, points of the drop surface; rows, and rows added between those of equal spacing;
         levels, rings in them, helices, ramps.
+    exact : ExactFit, optional
+        How the moves were corrected, if the set-up has an exact surface and the operation uses it.
     """
 
     time_s: float = 0.0
@@ -60,6 +93,7 @@ class OperationReport:
     largest_engagement: float | None = None
     blocked: tuple[Blocked, ...] = ()
     stats: Mapping[str, int] = field(default_factory=dict)
+    exact: ExactFit | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +139,8 @@ class Operation:
 @dataclass(frozen=True, eq=False)
 class PlannedMoves:
     """Moves of an operation, before its report: `poses`, `kind` and `feed` as in `Operation`, the volumes `removed`
-    (n - 1,) mm³ by the moves, `blocked`, `reason` and `stats`, and the largest width of cut as a share of the diameter
-    if that is bounded."""
+    (n - 1,) mm³ by the moves, `blocked`, `reason` and `stats`, the largest width of cut as a share of the diameter if
+    that is bounded, and how the moves were corrected on an exact surface, if they were."""
 
     poses: NDArray[np.float64]
     kind: NDArray[np.uint8]
@@ -116,6 +150,7 @@ class PlannedMoves:
     reason: str
     stats: Mapping[str, int]
     engagement: float | None = None
+    exact: ExactFit | None = None
 
 
 def lengths_of(poses: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -132,11 +167,12 @@ def report_of(
     blocked: tuple[Blocked, ...],
     stats: Mapping[str, int],
     engagement: float | None = None,
+    exact: ExactFit | None = None,
 ) -> OperationReport:
     """The report of an operation on a stock with rays ``pitch`` mm apart. ``removed[k]``: mm³ that the move to pose
     k + 1 removes. Moves that fit between two rays count as air only in a longer run of such moves."""
     if not len(poses):
-        return OperationReport(blocked=blocked, stats=stats, largest_engagement=engagement)
+        return OperationReport(blocked=blocked, stats=stats, largest_engagement=engagement, exact=exact)
     length, rapid = lengths_of(poses), kind == RAPID
     idle = np.concatenate([[True], removed <= 0]) & ~rapid
     run = np.cumsum(np.diff(idle, prepend=False) != 0)  # odd numbers are runs of idle moves
@@ -148,11 +184,12 @@ def report_of(
         largest_engagement=engagement,
         blocked=blocked,
         stats=stats,
+        exact=exact,
     )
 
 
 def operation_of(moves: PlannedMoves, tool: Tool, pitch: float, spindle: float, tolerance: float) -> Operation:
     """An operation from the moves that the core has planned on a stock with rays ``pitch`` mm apart."""
     arrays = moves.poses, moves.kind, moves.feed
-    report = report_of(*arrays, moves.removed, pitch, moves.blocked, moves.stats, moves.engagement)
+    report = report_of(*arrays, moves.removed, pitch, moves.blocked, moves.stats, moves.engagement, moves.exact)
     return Operation(*arrays, tool, report, moves.reason, float(spindle), float(tolerance))

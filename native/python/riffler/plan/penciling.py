@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import Collider, Tool
+from .._core import Collider, Mesh, Tool
 from ..arguments import Progress
 from ..hints import hinted
+from .exact_path import PathFit, fit_path
 from .locations import cutter_locations
-from .operations import Blocked, Operation
+from .operations import Blocked, ExactFit, Operation
 from .path_order import order_paths
 from .posed import along_poses
 from .rest import inside, rest_region
-from .setups import Setup
+from .setups import FORCE_SPACING, Setup
 from .strategies.pencil import pencil
 from .upright import joined
 
@@ -41,6 +42,10 @@ def pencil_operation(
     lift frees, and places where the lift is larger than the cutter's radius, as in valleys on the other side. Leads and
     retracts are proven clear in the same way: where the tool cannot come down along its axis, as under an overhang, it
     comes from the side, or the cut begins elsewhere; a cut that no lead reaches is left out and listed, too.
+
+    If the set-up has an exact surface, the ball's centres are moved until it touches the exact faces on both sides, and
+    lifts are those from the exact surface. Fixtures must then be volumes. Points without such a place nearby stay where
+    they are on the triangles; ``report.exact`` counts them as ``kept``, and rows that were lifted as ``raised``.
 
     Parameters
     ----------
@@ -87,14 +92,20 @@ def pencil_operation(
     setup = setup.along(orientation)
     curves = None if rest is None else rest_region(setup, tool, rest)
     found = pencil(setup.part, tool, tolerance=tolerance, progress=progress, **options)
-    collider = Collider(joined([setup.part, *setup.obstacles])) if len(found) else None
+    collider = _collider(setup) if len(found) else None
     blocked, cuts = [], []
+    fits: list[PathFit] = []
+    raised = 0
     for index, backwards in order_paths(found):
         path = found[index]
+        if setup.exact is not None:
+            path, fit = fit_path(path, setup.exact, setup.deviation, tolerance)
+            fits.append(fit)
         assert collider is not None
         cl, report = cutter_locations(path.orient({0: setup.axis}), tool, collider, tolerance=tolerance)
         blocked += [Blocked(one.reason, path.centres[one.point], 0.0) for one in report.blocked]
         blocked += [Blocked(one.reason, cl[one.row, :3], 0.0) for one in report.unsafe]
+        raised += int((report.lift > 0).sum())
         out = report.lift > tool.diameter / 2  # the ball is out of the valley
         if out.any():
             first = cl[int(np.argmax(out)), :3]
@@ -121,4 +132,29 @@ def pencil_operation(
         blocked=blocked,
         reason="" if cuts else reason,
         stats={"paths": len(found)},
+        exact=None if setup.exact is None else _total(fits, raised),
+    )
+
+
+def _collider(setup: Setup) -> Collider:
+    """Part and fixtures, for cutter locations: the exact surface if there is one."""
+    if setup.exact is None:
+        return Collider(joined([setup.part, *setup.obstacles]))
+    volumes = [one for one in setup.fixtures if not isinstance(one, Mesh)]
+    if len(volumes) < len(setup.fixtures):
+        raise ValueError(
+            "fixtures: a pencil cut on exact faces needs them as volumes; make them with riffler.Volume.from_mesh"
+        )
+    return Collider(setup.exact, fixtures=volumes, spacing=FORCE_SPACING)
+
+
+def _total(fits: list[PathFit], raised: int) -> ExactFit:
+    return ExactFit(
+        fitted=sum(fit.fitted for fit in fits),
+        inserted=sum(fit.inserted for fit in fits),
+        raised=raised,
+        kept=sum(fit.kept for fit in fits),
+        before=max((fit.before for fit in fits), default=0.0),
+        after=max((fit.after for fit in fits), default=0.0),
+        kept_depth=0.0,
     )

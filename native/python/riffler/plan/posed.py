@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .. import _core
 from .._core import Tool
 from ..arguments import Progress
-from .operations import Blocked, Operation, operation_of
-from .setups import Setup
+from .operations import Blocked, ExactFit, Operation, operation_of
+from .setups import GREATER, Setup
 
 STEEPEST = np.cos(np.radians(80)) + 1e-9  # cosine of the largest angle from the set-up's axis: see kMaxTilt
 
@@ -31,11 +31,13 @@ def along_poses(
     blocked: Sequence[Blocked] = (),
     reason: str = "",
     stats: Mapping[str, int] | None = None,
+    exact: ExactFit | None = None,
     progress: Progress = None,
 ) -> Operation:
     """An operation that cuts lines of poses (n, 6), at most ``engraved`` + ``tolerance`` mm deep in part or fixtures.
     Poses that no lift up to ``max_lift`` mm frees are left out. ``blocked`` and ``stats`` are added to the report;
-    ``reason``: why there are no lines."""
+    ``reason``: why there are no lines. ``exact``: how the lines were moved onto the set-up's exact surface; they may
+    then enter the part's triangles by as much as these may lie outside of it."""
     for name, value in (("feed", feed), ("plunge", plunge)):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} must be positive and finite, not {value}")
@@ -50,7 +52,7 @@ def along_poses(
         axis=setup.axis,
         clearance=setup.clearance,
         lines=kept,
-        distance=-engraved,
+        distance=-engraved - (GREATER * setup.deviation if exact is not None else 0.0),
         tolerance=tolerance,
         max_lift=max_lift,
         feed=feed,
@@ -59,7 +61,7 @@ def along_poses(
     )
     every = (*blocked, *more, *moves.blocked)
     why = "" if len(moves.poses) else reason or (every[0].reason if every else moves.reason)
-    moves = replace(moves, blocked=every, reason=why, stats={**(stats or {}), **moves.stats})
+    moves = replace(moves, blocked=every, reason=why, stats={**(stats or {}), **moves.stats}, exact=exact)
     return replace(operation_of(moves, tool, setup.stock.pitch, spindle, tolerance), engraved=float(engraved))
 
 

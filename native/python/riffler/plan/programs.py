@@ -14,7 +14,7 @@ from .._core import Finding, Program, Tool
 from ..arguments import Progress
 from ..hints import hinted
 from .operations import RAPID, Operation
-from .setups import ROUNDING, Setup
+from .setups import GREATER, ROUNDING, Setup
 
 TURN = radians(10)  # largest angle between two rows of a turn
 
@@ -47,7 +47,8 @@ def program(
 
     The program is simulated on the stock before its first operation. A fault is an error, and no program
     is returned: a rapid that meets material, shank or holder in stock, the tool in a fixture, a gouge beyond the
-    tolerance of the operations.
+    tolerance of the operations. Gouges are measured on the part's triangles; if the set-up has an exact surface, they
+    may be deeper by 1.5 times the distance of the triangles from it.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def program(
         setup.part,
         setup.obstacles,
         tolerance=tolerance,
-        gouge_tolerance=tolerance + ROUNDING,
+        gouge_tolerance=tolerance + ROUNDING + GREATER * setup.deviation,
         progress=progress,
     )
     findings = [found for found in report.findings if not _meant(found, parts, planned, tolerance)]

@@ -218,6 +218,8 @@ def _left_by(tool: Tool, setup: Setup, above: float, allowance: float) -> Volume
         plunge=1.0,
         lead=0.0,
         **rule_arguments(None),
+        exact=None,
+        deviation=0.0,
         progress=None,
     )
     if len(done.poses):

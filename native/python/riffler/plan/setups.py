@@ -10,12 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from .._core import Mesh, Volume
+from .._core import Collider, Mesh, Surface, Volume
 from ..arguments import Progress
+from ..cad.part import CadPart
 from .operations import Operation
 
 UPRIGHT = (0.0, 0.0, 1.0)
 ROUNDING = 1e-3  # mm by which a verified gouge may exceed the operation's tolerance, for rounding
+
+FORCE_SPACING = 10.0  # mm: no force is asked of the exact collider
+SAMPLES = 300  # triangles at which the distance of the part from its exact surface is measured
+GREATER = 1.5  # factor on the deviation of triangles from the exact surface, which is measured, not proven
+FARTHEST = 0.02  # of the part's size: triangles further away belong to another surface
 
 
 class Setup:
@@ -23,8 +29,8 @@ class Setup:
 
     Parameters
     ----------
-    part : Mesh
-        The part.
+    part : Mesh or CadPart
+        The part. One of ``riffler.cad.read(path, exact=True)`` brings its exact surface.
     stock : Volume
         The material before the first operation, in the part's frame; its rays run along the axis, or in all three
         directions ("xyz"). It is not changed.
@@ -38,11 +44,15 @@ class Setup:
         One of ``riffler.machines()``. A machine of three axes needs the axis (0, 0, 1).
     origin : array_like, shape (3,)
         Zero of the program, mm.
+    exact : Surface, optional
+        The exact surface that the part's triangles approximate; its normals point out of the material. `finish` and
+        `pencil_operation` then take contacts from it, so that their error does not depend on the triangles.
 
     Raises
     ------
     ValueError
-        Naming the misfit: a stock smaller than the part or in another place, an axis that the machine lacks.
+        Naming the misfit: an exact surface that is not where the triangles are, a stock smaller than the part or in
+        another place, an axis that the machine lacks.
 
     Examples
     --------
@@ -55,14 +65,21 @@ class Setup:
 
     def __init__(
         self,
-        part: Mesh,
+        part: Mesh | CadPart,
         stock: Volume,
         fixtures: Sequence[Volume | Mesh] = (),
         axis: ArrayLike = UPRIGHT,
         clearance: float = 5.0,
         machine: str = "3-axis",
         origin: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        exact: Surface | None = None,
     ) -> None:
+        deviation = None
+        if isinstance(part, CadPart):
+            if exact is None:
+                exact, deviation = part.surface, part.report.deviation
+            part = part.mesh
         self.part, self.fixtures = part, tuple(fixtures)
         self.axis, self.origin = _unit(axis, "axis"), _vector(origin, "origin")
         self.clearance, self.machine = float(clearance), machine
@@ -74,6 +91,11 @@ class Setup:
         _check_stock(part, stock)
         self._stock = copy(stock)
         self._before: list[tuple[Operation, Volume]] = []
+        self.exact = exact
+        self.deviation = 0.0
+        if exact is not None:
+            self.deviation = _deviation(part, exact) if deviation is None else deviation
+        self._collider: Collider | None = None
         self._obstacles = [one.to_mesh() if isinstance(one, Volume) else one for one in self.fixtures]
 
     @property
@@ -93,6 +115,13 @@ class Setup:
     def obstacles(self) -> list[Mesh]:
         """The fixtures as meshes."""
         return list(self._obstacles)
+
+    @property
+    def exact_collider(self) -> Collider | None:
+        """The exact surface, prepared for distances of tools; None without one."""
+        if self._collider is None and self.exact is not None:
+            self._collider = Collider(self.exact, spacing=FORCE_SPACING)
+        return self._collider
 
     def along(self, orientation: ArrayLike | None) -> Setup:
         """This set-up with the tool along another direction, on the stock in its present state.
@@ -191,6 +220,23 @@ def _unit(values: ArrayLike, name: str) -> NDArray[np.float64]:
     if abs(np.linalg.norm(out) - 1) > 1e-6:
         raise ValueError(f"{name} must be a unit vector, not {out.tolist()}")
     return out
+
+
+def _deviation(part: Mesh, exact: Surface) -> float:
+    """Largest distance of the part's triangles from the exact surface, mm, at their middles, corners and the middles of
+    their sides. ValueError if they are not of the same part."""
+    rows = np.asarray(part.triangles)
+    corners = np.asarray(part.vertices)[rows[:: max(1, len(rows) // SAMPLES)]]
+    weights = np.array([(1, 1, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (1, 0, 0)])
+    points = np.concatenate([np.einsum("j,kji->ki", w / w.sum(), corners) for w in weights])
+    far = float(exact.closest(points)[2].max())
+    lower, upper = part.bounds
+    if far > FARTHEST * float(np.linalg.norm(upper - lower)):
+        raise ValueError(
+            f"exact: the part's triangles are up to {far:.3g} mm from this surface; give the surface of the same part, "
+            "in the same place and in mm"
+        )
+    return far
 
 
 def _check_axis(machine: str, stock: Volume, axis: NDArray[np.float64], name: str) -> None:

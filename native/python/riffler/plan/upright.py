@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .._core import Mesh, Tool
 from ..arguments import Progress
 from .locations import drop
-from .operations import LEAD, RAPID, Blocked, Operation, PlannedMoves, operation_of
+from .operations import LEAD, RAPID, Blocked, ExactFit, Operation, PlannedMoves, operation_of
 from .setups import Setup
 
 ABOVE = 1.0  # mm above the stock: where a rapid downwards ends
@@ -71,7 +71,7 @@ class Moves:
 
     def operation(
         self, tool: Tool, blocked: Sequence[Blocked], reason: str, stats: Mapping[str, int], spindle: float,
-        tolerance: float, progress: Progress = None,
+        tolerance: float, progress: Progress = None, exact: ExactFit | None = None,
     ) -> Operation:  # fmt: skip
         """Makes the operation. Carves a copy of the set-up's stock to find what each move removes."""
         count = len(self.tips)
@@ -81,5 +81,5 @@ class Moves:
         removed = np.zeros(0)
         if count:
             removed = copy(self.setup.stock).carve(tool, poses, progress=progress).removed
-        moves = PlannedMoves(poses, kind, feed, removed, tuple(blocked), "" if count else reason, stats)
+        moves = PlannedMoves(poses, kind, feed, removed, tuple(blocked), "" if count else reason, stats, exact=exact)
         return operation_of(moves, tool, self.setup.stock.pitch, spindle, tolerance)
