@@ -2715,7 +2715,7 @@ class Mesher:
 
     ``Mesher(volume)`` meshes the volume; ``update(volume)`` meshes only its changes. The mesh is
     always, bit for bit, that of ``volume.to_mesh()``, with a tolerance that of ``volume.to_mesh(tolerance=tolerance)``.
-    gives. It keeps a snapshot of the volume, which shares its tiles.
+    It keeps a snapshot of the volume, which shares its tiles.
 
     With a tolerance, patches and `mesh` have only the triangles that the shape needs. The mesher keeps the full mesh too,
     for the next update: `pick` and `freeze` find the full surface, and ``patch(normals=...)`` takes its normals, so that a

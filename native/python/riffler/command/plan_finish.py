@@ -1,9 +1,7 @@
 """Finish a part in rows, and write the program.
 
-riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
-riffler plan finish part.stl --tool ball:6 --pattern waterline --slopes 30,90 --out walls.ngc
+riffler plan finish part.step --tool ball:6 --cusp 0.02 --exact --out part.ngc
 riffler plan finish part.stl --tool ball:6 --orientation normal --post tcp --out five-axes.ngc
-riffler plan finish part.step --tool ball:6 --exact --out part.ngc
 riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
 
 The default stock is the part's box with the allowance on top. The program is simulated on the stock before it is
@@ -39,7 +37,11 @@ HELP = "finish a part in rows, as NC code"
 def add_arguments(parser: Parser) -> None:
     add_tool(parser)
     parser.add_argument(
-        "--pattern", choices=plan.PATTERNS, default="parallel", help="pattern of the rows (default parallel)"
+        "--pattern",
+        choices=plan.PATTERNS,
+        default="parallel",
+        metavar="PATTERN",
+        help=f"{', '.join(plan.PATTERNS[:-1])} or {plan.PATTERNS[-1]} (default parallel)",
     )
     add_lengths(
         parser,
@@ -52,7 +54,7 @@ def add_arguments(parser: Parser) -> None:
         "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
     )
     parser.add_argument(
-        "--centre", metavar="X,Y,Z", help="centre of a spiral or of rays (default the middle of the part's box)"
+        "--centre", metavar="X,Y,Z", help="centre of a spiral or of rays (default the middle of the part)"
     )
     parser.add_argument(
         "--conventional", action="store_true", help="waterlines with the part to the left of the motion, not climb"
@@ -64,7 +66,7 @@ def add_arguments(parser: Parser) -> None:
     add_scene(
         parser,
         "1000",
-        ", or a rule for axes that change: normal, least_tilt, lead,tilt in degrees, towards=x,y,z, away=x,y,z",
+        ", or a rule: normal, least_tilt, lead,tilt, towards=x,y,z, away=x,y,z",
     )
     parser.add_argument(
         "--max-tilt",

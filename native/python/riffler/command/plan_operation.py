@@ -36,9 +36,7 @@ def add_lengths(parser: Parser, *lengths: tuple[str, str, str]) -> None:
 
 
 def add_lead(parser: Parser) -> None:
-    parser.add_argument(
-        "--lead", metavar="MM", help="radius of arcs into cuts and out of them (default half the cutter's radius)"
-    )
+    parser.add_argument("--lead", metavar="MM", help="radius of arcs into and out of cuts (default half the tool's)")
 
 
 def add_exact(parser: Parser) -> None:
@@ -56,13 +54,13 @@ def add_scene(parser: Parser, feed: str, rules: str = "") -> None:
     parser.add_argument("--feed", metavar="F", default=feed, help=f"mm/min of cuts (default {feed})")
     parser.add_argument("--plunge", metavar="F", help="mm/min of plunges (default a third of the feed)")
     parser.add_argument("--spindle", metavar="S", default="12000", help="rev/min (default 12000)")
-    parser.add_argument("--stock", metavar="STOCK", help="WxDxH, a mesh or a .rvol file (default the part's box)")
+    parser.add_argument("--stock", metavar="STOCK", help="WxDxH, a mesh or .rvol (default the part's box)")
     parser.add_argument("--pitch", metavar="MM", help="distance between the stock's rays")
     parser.add_argument("--origin", metavar="X,Y,Z", help="lower corner of a stock of given sizes")
     parser.add_argument(
         "--orientation",
         metavar="AXIS" if rules else "X,Y,Z",
-        help=f"direction x,y,z from tip to spindle (default 0,0,1){rules}, with rotary axes",
+        help=f"direction x,y,z from tip to spindle (default 0,0,1){rules or ', with rotary axes'}",
     )
     parser.add_argument("--zero", metavar="X,Y,Z", help="zero point of the program (default 0,0,0)")
     add_fixtures(parser)

@@ -21,12 +21,12 @@ def add_rods(parser: Parser) -> None:
             action="append",
             default=[],
             metavar="CONES",
-            help=f"{what} of tool N, or of all: [N=]Z0:R0:Z1:R1[,…], cones by heights from the tip and radii",
+            help=f"{what}, of tool N or all: [N=]Z0:R0:Z1:R1[,…], heights and radii",
         )
 
 
 def add_fixtures(parser: Parser) -> None:
-    about = "fixture, a mesh, CAD or .rvol file; may be repeated"
+    about = "fixture: a mesh, CAD file or .rvol; repeatable"
     parser.add_file("--fixture", about, PARTS + VOLUMES, action="append", default=[])
 
 
