@@ -1,6 +1,7 @@
 #include "base/io.hpp"
 
 #include <cstdio>
+#include <string>
 #include <system_error>
 
 #include "base/atomic_file.hpp"
@@ -24,11 +25,17 @@ std::vector<std::uint8_t> read_file(const fs::path& path) {
   const std::string name = file_name(path);
   check_regular(path);
   const InputStream in = open_input(path);
+  // The size is a guess, since another file may take the path's name at any time: the open one is read to its end.
   std::error_code unknown;
   const std::uintmax_t size = fs::file_size(path, unknown);
-  std::vector<std::uint8_t> bytes(unknown ? 0 : static_cast<std::size_t>(size));
-  if (!bytes.empty() && std::fread(bytes.data(), 1, bytes.size(), in.get()) != bytes.size())
-    throw FormatError(name, "byte " + std::to_string(std::ftell(in.get())), "cannot be read further");
+  std::vector<std::uint8_t> bytes;
+  std::size_t read = 0;
+  do {
+    bytes.resize(bytes.empty() ? 1 + static_cast<std::size_t>(unknown ? 0xFFFF : size) : 2 * bytes.size());
+    read += std::fread(bytes.data() + read, 1, bytes.size() - read, in.get());
+  } while (read == bytes.size());
+  if (std::ferror(in.get())) throw FormatError(name, "byte " + std::to_string(read), "cannot be read further");
+  bytes.resize(read);
   return bytes;
 }
 

@@ -169,8 +169,8 @@ void bind_operations(py::module_& m) {
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          const std::vector<int>& faces, const std::optional<ArrayLike>& centre, bool climb, double feed, double plunge,
          std::optional<double> lead, const std::optional<std::string>& rule, double ahead, double aside,
-         const ArrayLike& target, double max_tilt, double max_turn, const ColliderPtr& exact, double deviation,
-         const ProgressLike& progress) {
+         const ArrayLike& target, double max_tilt, double max_turn, const std::optional<ColliderPtr>& exact,
+         double deviation, const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.axes = to_rule(rule, ahead, aside, target, max_tilt, max_turn);
@@ -181,7 +181,7 @@ void bind_operations(py::module_& m) {
         if (centre) options.centre = to_vec3(*centre, "centre");
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
-                           return finished(scene, tool, options, exact, deviation, listener);
+                           return finished(scene, tool, options, exact.value_or(nullptr), deviation, listener);
                          });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
