@@ -182,6 +182,13 @@ class Play:
         self.begin = self.since = time.perf_counter()
         self.condition = None
 
+    def in_vain(self, why):
+        """The rest of a script that waited in vain: a picture of what stands there, if it can be had, and the end."""
+        try:
+            yield from self.screen.shot("in-vain")
+        finally:
+            raise AssertionError(why)
+
     def __call__(self):
         try:
             self.screen.pixels.tick()
@@ -189,10 +196,9 @@ class Play:
                 if self.condition():
                     self.condition = None
                 elif time.perf_counter() - self.since > PATIENCE:
-                    if not pixels.NONE:  # without pixels its picture is empty, and that would be the failure shown
-                        self.screen.take("in-vain")
                     why = conditions.explain(self.condition)
-                    raise AssertionError(f"waited {PATIENCE} s in vain at {where(self.generator)} for\n{why}")
+                    why = f"waited {PATIENCE} s in vain at {where(self.generator)} for\n{why}"
+                    self.condition, self.generator = None, self.in_vain(why)
                 else:
                     return 0.05
             wanted = next(self.generator)

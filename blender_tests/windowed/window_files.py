@@ -1,17 +1,18 @@
 """Stock of too few rays, of facets and of invalid sizes, by the panel's button. Then work whose file is chosen first:
 the selector opens, the work runs in the background, Esc leaves no file."""
 
+import time
 from pathlib import Path
 
 import bpy
 import numpy as np
+from riffler import threemf_writer
 
 from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
-# 0.7 million triangles: work of visible duration
-STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
+STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.5, "directions": "xyz"}
 
 
 def running():
@@ -20,6 +21,15 @@ def running():
 
 def selectors():
     return [(w, a) for w in bpy.context.window_manager.windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
+
+
+def typed(params, wanted):
+    """Whether folder and name are the wanted ones. If not, they are typed: a selector that is drawn late fills in its
+    own."""
+    if (params.directory.rstrip(b"/"), params.filename) == wanted:
+        return True
+    params.directory, params.filename = wanted
+    return False
 
 
 def choose(screen, operator, path, name=None, shot="", **more):
@@ -31,9 +41,10 @@ def choose(screen, operator, path, name=None, shot="", **more):
     yield lambda: selectors() and selectors()[0][1].spaces.active.params is not None
     yield 0.5
     window, area = selectors()[0]
-    params = area.spaces.active.params
-    params.directory, params.filename = str(path.parent).encode(), path.name if name is None else name
+    wanted = str(path.parent).encode(), path.name if name is None else name
+    yield lambda: typed(area.spaces.active.params, wanted)
     yield 0.5
+    yield lambda: typed(area.spaces.active.params, wanted)
     if shot:
         yield from screen.shot(shot)
     region = next(r for r in area.regions if r.type == "WINDOW")
@@ -172,17 +183,33 @@ def written(screen):
         assert path.stat().st_size > 5_000
 
 
+def endless(pieces):
+    """The first piece of a file, then nothing more: a window that draws slowly gets long slices of work, and all could
+    be written before the driver looks again."""
+    try:
+        yield next(pieces)
+        while True:
+            time.sleep(0.001)
+            yield
+    finally:
+        pieces.close()
+
+
 def cancelled(screen):
     """Esc: no file, and no leftovers next to it; an existing file stays."""
     path = Path(common.out("chosen.3mf"))
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
-    # All triangles: few are written before the driver looks again.
-    yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False, detail="ALL")
-    yield lambda: running() == "Exporting"
-    assert not bpy.ops.riffler.export_stl.poll()  # one long work at a time
-    screen.key("ESC")
-    yield lambda: not running()
+    pieces = threemf_writer.pieces
+    threemf_writer.pieces = lambda *words: endless(pieces(*words))
+    try:
+        yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False)
+        yield lambda: running() == "Exporting"
+        assert not bpy.ops.riffler.export_stl.poll()  # one long work at a time
+        screen.key("ESC")
+        yield lambda: not running()
+    finally:
+        threemf_writer.pieces = pieces
     assert path.read_bytes() == before and set(path.parent.glob("*chosen*")) == beside
 
 
