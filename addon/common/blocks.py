@@ -17,17 +17,6 @@ def within(shape: tuple[int, int, int], low, high, side: int = 32) -> list[int]:
     return [(i * ny + j) * nz + k for i in spans[0] for j in spans[1] for k in spans[2]]
 
 
-def beside(shape: tuple[int, int, int], bricks) -> set[int]:
-    """The bricks and all their neighbours."""
-    places = [(b // shape[2] // shape[1], b // shape[2] % shape[1], b % shape[2]) for b in bricks]
-    near = {(i + a, j + b, k + c) for i, j, k in places for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1)}
-    return {
-        (i * shape[1] + j) * shape[2] + k
-        for i, j, k in near
-        if 0 <= i < shape[0] and 0 <= j < shape[1] and 0 <= k < shape[2]
-    }
-
-
 class Blocks:
     """Bricks (i, j, k) of a lattice of `shape`, numbered as in riffler.Mesher, grouped into cuboids."""
 

@@ -93,9 +93,9 @@ class Chunks:
 
     def place(self, matrix):
         """Moves all chunks to `matrix`, the sculpt's."""
-        for name in self._names.values():
-            ob = bpy.data.objects.get(name)
-            if ob is not None and ob.parent is None and ob.matrix_world != matrix:
+        collection = collection_of(self._mark)
+        for ob in collection.objects if collection is not None else ():  # a search by name takes 4 µs for each
+            if ob.parent is None and NUMBER in ob and is_own(ob) and ob.matrix_world != matrix:
                 ob.matrix_world = matrix
 
     def adopt(self, fillings):

@@ -176,10 +176,10 @@ def sync(ob, token=""):
     was = _made.get(live.token, own.made) if live is not None else own.made
     if mark == was:
         return False
-    changed = link.history.follow(wanted)
+    link.history.follow(wanted)
     content = link.history.content()
     if live is not None:
-        live.recut(content, [(riffler.Tool.from_dict(c.tool), c.poses) for c in changed], token)
+        live.recut(content, token)
         _made[live.token] = mark
     else:
         with sculpts.in_object_mode(ob):
@@ -286,7 +286,7 @@ def keep(context, run, made, choice):
         raise
     new = [w.chain for w in wanted if w.key[0] == own.rows[-1].key]
     tools = [riffler.Tool.from_dict(chain.tool) for chain in new]
-    run.exchange(link.history.volume, [(tool, chain.poses) for tool, chain in zip(tools, new, strict=True)])
+    run.exchange(link.history.volume)
     for k, (tool, chain) in enumerate(zip(tools, new, strict=True)):
         run.persistence.carved(chain.tool, chain.poses, brush.journal, run.stroke.token, strength=run.strength)
         brush.record(run.stroke, k, tool, chain.poses, True)

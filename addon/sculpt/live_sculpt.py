@@ -218,13 +218,10 @@ class LiveSculpt:
         return first
 
     def _apply(self, brush, tool, poses, dt):
-        extent = self._extent(tool, poses)
         if brush.paints:
+            extent = self._extent(tool, poses)
             self._surface.masked.append(extent)
             self.stroke.painted.append(extent)
-        else:
-            self._surface.reached.append(extent)
-            self.stroke.swept.append(extent)
         cut = brush.apply(self, tool, poses, dt)
         if brush.puts_on:
             self._reach_out(tool, poses)
@@ -268,18 +265,16 @@ class LiveSculpt:
             bpy.ops.ed.undo_push(message=label)
         return True
 
-    def exchange(self, volume, tools_and_poses):
-        """In a stroke: replaces what was carved by a kept stroke's result, made along these poses."""
+    def exchange(self, volume):
+        """In a stroke: replaces what was carved by a kept stroke's result."""
         self.volume = volume
         self.persistence.cancelled()
         self.stroke.moves.clear()
-        self._surface.reached += [self._extent(tool, poses) for tool, poses in tools_and_poses]
 
-    def recut(self, content, tools_and_poses, token=""):
+    def recut(self, content, token=""):
         """Shows a content that follows from kept strokes (kept_strokes.py). Without a `token` the state keeps its
         own: the strokes' curves, which undo restores, decide what it is."""
         self._become(content)
-        self._surface.reached += [self._extent(tool, poses) for tool, poses in tools_and_poses]
         self.show()
         ob = self.object
         if token:
@@ -300,7 +295,7 @@ class LiveSculpt:
         stroke, self.stroke = self.stroke, None
         if stroke is not None:
             self.volume, self.mask = stroke.begin.volume, stroke.begin.mask
-            self._surface.masked, self._surface.reached = stroke.painted, stroke.swept
+            self._surface.masked = stroke.painted
             self.persistence.cancelled()
             self.show()
 

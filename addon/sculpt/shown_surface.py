@@ -15,13 +15,13 @@ from . import surfaces
 
 class ShownSurface:
     """`chunks`: chunks.Chunks. `stages` measures the cost. `within`: that of surfaces.within, without a mask. Strokes
-    add to `reached` and `masked` where material and mask may have changed since the last update: extents in rays."""
+    add to `masked` where the mask may have changed since the last update: extents in rays."""
 
     def __init__(self, chunks, stages, within, mesher=None):
         self.chunks, self._stages, self._within, self._mesher = chunks, stages, within, mesher
         self._stale = False  # True if the mesher's state differs from the volume
         self._refill = False  # True if the chunks were filled with more triangles than the mesher has, or with fewer
-        self.reached, self.masked = [], []
+        self.masked = []
 
     @property
     def shape(self):
@@ -47,23 +47,16 @@ class ShownSurface:
         """Meshes what has changed since the last update, and fills its chunks. `place`: matrix of the sculpt."""
         with self._stages.of("mesh"):
             mesher = self.mesher(volume, mask)
-            bricks = mesher.update(volume)
+            bricks = mesher.update(volume, normals=versions.OWN_NORMALS)
         for extent in self.masked:  # there the surface is the same, but not its colour
             bricks = sorted({*bricks, *blocks.within(mesher.shape, *extent)})
-        bricks = range(math.prod(mesher.shape)) if self._refill else self._with_borders(bricks)
-        self.masked, self.reached, self._refill = [], [], False
+        if self._refill:
+            bricks = range(math.prod(mesher.shape))
+        self.masked, self._refill = [], False
         with self._stages.of("transfer"):
             self.chunks.update(mesher, bricks, mask, self._stages)
             self.chunks.place(place)
         self._stages.looked()
-
-    def _with_borders(self, bricks):
-        """Adds bricks with unchanged triangles whose normals at the border to a changed one differ."""
-        if not versions.OWN_NORMALS or not len(bricks):
-            return bricks
-        shape = self._mesher.shape
-        swept = {brick for extent in self.reached for brick in blocks.within(shape, *extent)}
-        return sorted({*bricks, *(swept & blocks.beside(shape, bricks))})
 
     def adopt(self, fillings, volume, mask):
         """Blender has restored the chunks' meshes after an undo; fills the rest."""

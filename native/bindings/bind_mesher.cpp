@@ -234,11 +234,11 @@ void bind_frozen_surface(py::module_& m) {
   bind_counters(surface);
 }
 
-std::vector<std::size_t> update(SharedMesher& self, SharedVolume& volume) {
+std::vector<std::size_t> update(SharedMesher& self, SharedVolume& volume, bool normals) {
   const Volume state = state_of(volume);
   const NoGil release;
   const auto held = lock(self);
-  return self.mesher.update(state);
+  return self.mesher.update(state, normals);
 }
 
 std::vector<std::size_t> patches(SharedMesher& self) {
@@ -302,12 +302,16 @@ ValueError
   mesher
       .def(py::init(&make), py::arg("volume"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("progress") = py::none())
-      .def("update", &update, py::arg("volume"), R"(Follows a change of the volume.
+      .def("update", &update, py::arg("volume"), py::kw_only(), py::arg("normals") = false,
+           R"(Follows a change of the volume.
 
 Parameters
 ----------
 volume : Volume
     As it is now.
+normals : bool
+    Also return the bricks whose triangles are the same, but whose ``patch(normals=...)`` may have other normals, since
+    they meet changed ones.
 
 Returns
 -------

@@ -8,6 +8,7 @@
 #include "base/sort_unique.hpp"
 #include "geom/math.hpp"
 #include "marching/mesh_state.hpp"
+#include "marching/vertex_star.hpp"
 
 namespace riffler::marching {
 
@@ -36,42 +37,24 @@ std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> 
   return out;
 }
 
-/// Maps a vertex number of the mesh to the patch's number, −1 if the patch lacks it.
-class Numbers {
+/// The bricks of some vertices of the mesh: those of a patch and their neighbours.
+class Owners {
  public:
-  Numbers(const MeshState& state, const MeshPatch& patch) : own_(patch.own), foreign_(patch.foreign) {
-    for (const std::size_t n : patch.bricks) {
-      const ActiveBrick& brick = *state.bricks.active(n);
-      ranges_.push_back({brick.first_vertex, brick.vertices(), count_});
-      count_ += brick.vertices();
-    }
-    std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
+  Owners(const MeshState& state, std::span<const std::size_t> bricks) {
+    for (const std::size_t n : bricks) bricks_.push_back(state.bricks.active(n));
+    for (const std::size_t n : beside(state.bricks, bricks)) bricks_.push_back(state.bricks.active(n));
+    std::sort(bricks_.begin(), bricks_.end(),
+              [](const ActiveBrick* a, const ActiveBrick* b) { return a->first_vertex < b->first_vertex; });
   }
-  /// For all of a brick's own vertices, in order: most are far from the patch, so there is no search for each one.
-  void of_brick(const ActiveBrick& brick, std::vector<std::int64_t>& out) const {
-    out.assign(brick.vertices(), -1);
-    const auto first = static_cast<std::int32_t>(brick.first_vertex);
-    for (auto at = std::lower_bound(foreign_.begin(), foreign_.end(), first);
-         at != foreign_.end() && static_cast<std::size_t>(*at - first) < out.size(); ++at)
-      out[static_cast<std::size_t>(*at - first)] = static_cast<std::int64_t>(own_) + (at - foreign_.begin());
-  }
-  std::int64_t of(std::int32_t v) const {
-    const auto vertex = static_cast<std::size_t>(v);
-    const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), vertex,
-                                        [](std::size_t x, const Range& r) { return x < r.first; });
-    if (after != ranges_.begin() && vertex < (after - 1)->first + (after - 1)->size)
-      return static_cast<std::int64_t>((after - 1)->number + vertex - (after - 1)->first);
-    const auto at = std::lower_bound(foreign_.begin(), foreign_.end(), v);
-    return at != foreign_.end() && *at == v ? static_cast<std::int64_t>(own_) + (at - foreign_.begin()) : -1;
+  const ActiveBrick& of(std::int32_t vertex) const {
+    const auto after =
+        std::upper_bound(bricks_.begin(), bricks_.end(), static_cast<std::size_t>(vertex),
+                         [](std::size_t v, const ActiveBrick* brick) { return v < brick->first_vertex; });
+    return **(after - 1);
   }
 
  private:
-  struct Range {
-    std::size_t first, size, number;
-  };
-  std::vector<Range> ranges_;
-  std::size_t own_, count_ = 0;
-  const std::vector<std::int32_t>& foreign_;
+  std::vector<const ActiveBrick*> bricks_;
 };
 
 /// Lists of wedges by vertex: counted first, then filled.
@@ -109,6 +92,14 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)), 0};
   out.angle[2] = kPi - out.angle[0] - out.angle[1];
   return out;
+}
+
+/// The same for the corner `a` alone.
+Wedge wedge_at(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 cross = glm::cross(b - a, c - a);
+  const double twice = glm::length(cross);
+  if (!(twice > 0)) return {Vec3(0.0), 0};
+  return {cross / twice, std::atan2(twice, glm::dot(b - a, c - a))};
 }
 
 /// The mean of the fan's normals within an angle of `own`, or `own` if there is none.
@@ -175,56 +166,28 @@ class CornerOfLarge {
   double tolerance_;
 };
 
+/// Corners (a, b, c) of a triangle of the full mesh, from `vertex` on, at the coordinates that patches have: world
+/// frame, float32.
+std::array<Vec3, 3> corners_from(const MeshState& state, std::size_t triangle, std::int32_t vertex) {
+  const Mesh& mesh = state.surface.mesh;
+  const Vec3i& t = mesh.triangles[triangle];
+  const int first = t.x == vertex ? 0 : t.y == vertex ? 1 : 2;
+  const auto place = [&](int c) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[t[c % 3]]))); };
+  return {place(first), place(first + 1), place(first + 2)};
+}
+
 /// The normals of an adaptive patch, from the triangles of the full mesh around its vertices.
 base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch& patch, double least) {
-  struct Found {
-    Vec3i triangle;
-    std::array<std::int64_t, 3> vertex;
-  };
-  // Patch numbers by full number, ascending.
-  std::vector<std::pair<std::int32_t, std::int64_t>> sorted;
-  for (std::size_t v = 0; v < patch.numbers.size(); ++v)
-    sorted.emplace_back(patch.numbers[v], static_cast<std::int64_t>(v));
-  std::sort(sorted.begin(), sorted.end());
-  const Mesh& mesh = state.surface.mesh;
-  std::vector<std::size_t> bricks = beside(state.bricks, patch.bricks);
-  bricks.insert(bricks.end(), patch.bricks.begin(), patch.bricks.end());
-  std::vector<Found> found;
-  Fans<FullWedge> fans(patch.vertices.size());
-  std::vector<std::int64_t> of_brick;
-  for (const std::size_t n : bricks) {
-    const ActiveBrick& brick = *state.bricks.active(n);
-    const auto lookup = [&](std::int32_t v) {
-      const auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair{v, std::int64_t{0}});
-      return at != sorted.end() && at->first == v ? at->second : -1;
-    };
-    const auto first = static_cast<std::int32_t>(brick.first_vertex);
-    of_brick.assign(brick.vertices(), -1);
-    for (auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair{first, std::int64_t{0}});
-         at != sorted.end() && static_cast<std::size_t>(at->first - first) < of_brick.size(); ++at)
-      of_brick[static_cast<std::size_t>(at->first - first)] = at->second;
-    const auto number = [&](std::int32_t v) {
-      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for the vertices before it
-      return k < of_brick.size() ? of_brick[k] : lookup(v);
-    };
-    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
-      const Vec3i& triangle = mesh.triangles[t];
-      const Found one{triangle, {number(triangle.x), number(triangle.y), number(triangle.z)}};
-      if (std::max({one.vertex[0], one.vertex[1], one.vertex[2]}) < 0) continue;
-      found.push_back(one);
-      for (const std::int64_t v : one.vertex)
-        if (v >= 0) fans.count(static_cast<std::size_t>(v));
+  const Owners owners(state, patch.bricks);
+  VertexStar star(state.surface);
+  std::vector<FullWedge> wedges;
+  std::vector<std::size_t> begin{0};
+  for (const std::int32_t vertex : patch.numbers) {
+    for (const std::size_t t : star.of(owners.of(vertex), vertex)) {
+      const auto [a, b, c] = corners_from(state, t, vertex);
+      wedges.push_back({wedge_at(a, b, c), b - a, c - a});
     }
-  }
-  fans.reserve();
-  const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };
-  for (const Found& one : found) {
-    const std::array<Vec3, 3> at{place(one.triangle.x), place(one.triangle.y), place(one.triangle.z)};
-    const Corners corners = corners_of(at[0], at[1], at[2]);
-    for (int c = 0; c < 3; ++c)
-      if (one.vertex[c] >= 0)
-        fans.add(static_cast<std::size_t>(one.vertex[c]),
-                 {{corners.normal, corners.angle[c]}, at[(c + 1) % 3] - at[c], at[(c + 2) % 3] - at[c]});
+    begin.push_back(wedges.size());
   }
   base::BulkVector<Vec3f> out(3 * patch.triangles.size());
   for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
@@ -233,64 +196,101 @@ base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch
     const Vec3 own = corners_of(at[0], at[1], at[2]).normal;
     for (int c = 0; c < 3; ++c)
       out[3 * t + c] = CornerOfLarge(at[(c + 1) % 3] - at[c], at[(c + 2) % 3] - at[c], own, state.adaptive->tolerance())
-                           .normal(fans.at(static_cast<std::size_t>(v[c])), least);
+                           .normal({wedges.data() + begin[v[c]], wedges.data() + begin[v[c] + 1]}, least);
   }
   return out;
 }
 
+/// A triangle of another brick at a vertex of a full patch.
+struct OutsideWedge {
+  std::size_t vertex;  // of the patch
+  Wedge wedge;
+};
+
+/// Those of the patch's vertices that lie at its border.
+std::vector<OutsideWedge> wedges_outside(const MeshState& state, const MeshPatch& patch) {
+  std::vector<std::pair<std::size_t, std::size_t>> inside;  // ranges of the patch's triangles in the mesh
+  for (const std::size_t n : patch.bricks) {
+    const ActiveBrick& brick = *state.bricks.active(n);
+    inside.emplace_back(2 * brick.first_edge, 2 * (brick.first_edge + brick.edges()));
+  }
+  std::sort(inside.begin(), inside.end());
+  const auto is_inside = [&](std::size_t t) {
+    const auto after = std::upper_bound(inside.begin(), inside.end(), std::pair{t, ~std::size_t{0}});
+    return after != inside.begin() && t < (after - 1)->second;
+  };
+  std::vector<OutsideWedge> out;
+  VertexStar star(state.surface);
+  const auto add = [&](const ActiveBrick& brick, std::int32_t vertex, std::size_t of_patch) {
+    for (const std::size_t t : star.of(brick, vertex)) {
+      if (is_inside(t)) continue;
+      const auto [a, b, c] = corners_from(state, t, vertex);
+      out.push_back({of_patch, wedge_at(a, b, c)});
+    }
+  };
+  std::size_t own = 0;
+  for (const std::size_t n : patch.bricks) {
+    const ActiveBrick& brick = *state.bricks.active(n);
+    for_upper_vertices(state.surface, brick, [&](std::int32_t vertex) {
+      add(brick, vertex, own + static_cast<std::size_t>(vertex) - brick.first_vertex);
+    });
+    own += brick.vertices();
+  }
+  const Owners owners(state, patch.bricks);
+  for (std::size_t f = 0; f < patch.foreign.size(); ++f)
+    add(owners.of(patch.foreign[f]), patch.foreign[f], patch.own + f);
+  return out;
+}
+
+/// The normals at a vertex's corners: one for all, if no triangle around it is at a sharp edge to another.
+class Means {
+ public:
+  Means(const Fans<Wedge>& fans, std::size_t vertices, double sharp)
+      : fans_(fans), least_(std::cos(sharp)), half_(std::cos(sharp / 2)), common_(vertices) {
+    for (std::size_t v = 0; v < vertices; ++v)
+      if (const std::span<const Wedge> fan = fans.at(v); is_smooth(fan))
+        common_[v] = mean_near(fan, fan.front().normal, least_);
+  }
+  Vec3f at(std::size_t vertex, const Vec3& own) const {
+    return common_[vertex] != Vec3f(0.0F) && own != Vec3(0.0) ? common_[vertex]
+                                                              : mean_near(fans_.at(vertex), own, least_);
+  }
+
+ private:
+  bool is_smooth(std::span<const Wedge> fan) const {
+    for (const Wedge& w : fan)
+      if (!(glm::dot(w.normal, fan.front().normal) > half_ + kRounding)) return false;
+    return !fan.empty();
+  }
+  static constexpr double kRounding = 1e-9;
+
+  const Fans<Wedge>& fans_;
+  double least_, half_;
+  std::vector<Vec3f> common_;  // 0: there is none
+};
+
 }  // namespace
 
-base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::size_t> bricks,
-                                       const MeshPatch& patch, double sharp) {
-  struct Outside {
-    Vec3i triangle;
-    std::array<std::int64_t, 3> vertex;
-  };
+base::BulkVector<Vec3f> corner_normals(const MeshState& state, const MeshPatch& patch, double sharp) {
   if (state.adaptive) return adaptive_normals(state, patch, std::cos(sharp));
-  const Mesh& mesh = state.surface.mesh;
-  const Numbers numbers(state, patch);
-  std::vector<Outside> outside;
+  const std::vector<OutsideWedge> outside = wedges_outside(state, patch);
   Fans<Wedge> fans(patch.vertices.size());
   for (const Vec3i& t : patch.triangles)
     for (int c = 0; c < 3; ++c) fans.count(static_cast<std::size_t>(t[c]));
-  std::vector<std::int64_t> of_brick;
-  for (const std::size_t n : beside(state.bricks, bricks)) {
-    const ActiveBrick& brick = *state.bricks.active(n);
-    numbers.of_brick(brick, of_brick);
-    const auto number = [&](std::int32_t v) {
-      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for the vertices before it
-      return k < of_brick.size() ? of_brick[k] : numbers.of(v);
-    };
-    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
-      const Vec3i& triangle = mesh.triangles[t];
-      const Outside found{triangle, {number(triangle.x), number(triangle.y), number(triangle.z)}};
-      if (std::max({found.vertex[0], found.vertex[1], found.vertex[2]}) < 0) continue;
-      outside.push_back(found);
-      for (const std::int64_t v : found.vertex)
-        if (v >= 0) fans.count(static_cast<std::size_t>(v));
-    }
-  }
+  for (const OutsideWedge& o : outside) fans.count(o.vertex);
   fans.reserve();
-  // Uses the coordinates that patches have: world frame, float32.
   std::vector<Vec3> normals;
   normals.reserve(patch.triangles.size());
-  const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };
   for (const Vec3i& t : patch.triangles) {
     const Corners corners = corners_of(Vec3(patch.vertices[t.x]), Vec3(patch.vertices[t.y]), Vec3(patch.vertices[t.z]));
     normals.push_back(corners.normal);
     for (int c = 0; c < 3; ++c) fans.add(static_cast<std::size_t>(t[c]), {corners.normal, corners.angle[c]});
   }
-  for (const Outside& o : outside) {
-    const Corners corners = corners_of(place(o.triangle.x), place(o.triangle.y), place(o.triangle.z));
-    for (int c = 0; c < 3; ++c)
-      if (o.vertex[c] >= 0) fans.add(static_cast<std::size_t>(o.vertex[c]), {corners.normal, corners.angle[c]});
-  }
-  base::BulkVector<Vec3f> out;
-  out.resize(3 * patch.triangles.size());
-  const double least = std::cos(sharp);
+  for (const OutsideWedge& o : outside) fans.add(o.vertex, o.wedge);
+  const Means means(fans, patch.vertices.size(), sharp);
+  base::BulkVector<Vec3f> out(3 * patch.triangles.size());
   for (std::size_t t = 0; t < patch.triangles.size(); ++t)
-    for (int c = 0; c < 3; ++c)
-      out[3 * t + c] = mean_near(fans.at(static_cast<std::size_t>(patch.triangles[t][c])), normals[t], least);
+    for (int c = 0; c < 3; ++c) out[3 * t + c] = means.at(static_cast<std::size_t>(patch.triangles[t][c]), normals[t]);
   return out;
 }
 

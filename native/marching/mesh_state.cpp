@@ -202,10 +202,10 @@ std::size_t MeshState::triangles(std::size_t brick) const {
 
 // Following a volume.
 
-std::vector<std::size_t> MeshState::update(const Volume& now) {
+std::vector<std::size_t> MeshState::update(const Volume& now, bool normals) {
   if (!(now.frame() == volume.frame()))
     throw std::invalid_argument("a mesher follows volumes of one box, pitch and directions");
-  std::vector<std::size_t> changed;
+  std::vector<std::size_t> changed, shaded;
   const bool rebuilt = broken_;
   if (rebuilt) {
     changed = active_bricks();
@@ -218,15 +218,25 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
     const Changes changes = changes_between(volume, now, lattice, bricks);
     broken_ = true;  // until the update succeeds
     follow(now);
-    if (!changes.empty()) changed = mesh_again(changes);
+    if (!changes.empty()) {
+      Renewed renewed = mesh_again(changes);
+      changed = std::move(renewed.meshed), shaded = std::move(renewed.shaded);
+    }
   }
   base::sort_unique(changed);
   for (const std::size_t n : changed) facets[n].reset();
+  // The next cells of a change are in `changed`, too: its reach (changes.cpp) covers the triangles around their
+  // vertices.
+  if (normals) shaded.insert(shaded.end(), changed.begin(), changed.end());
   if (adaptive && rebuilt)
     adaptive->build(active_bricks(), {});
   else if (adaptive)
     changed = adaptive->update(changed);
   broken_ = false;
+  if (normals) {
+    changed.insert(changed.end(), shaded.begin(), shaded.end());
+    base::sort_unique(changed);
+  }
   return changed;
 }
 
@@ -236,9 +246,11 @@ void MeshState::check_whole() const {
         "the last update of this mesher failed half way; update it again before asking for its mesh");
 }
 
-std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
+MeshState::Renewed MeshState::mesh_again(const Changes& changes) {
   read_signs_again(changes.sign_bricks);
-  std::vector<std::size_t> changed, fresh, pulling;
+  Renewed out;
+  std::vector<std::size_t>& changed = out.meshed;
+  std::vector<std::size_t> fresh, pulling;
   std::vector<Vec3i> undone;  // cells whose vertices were pulled and are no longer
   for (const std::size_t n : changes.mesh_bricks) {
     if (bricks.active(n)) changed.push_back(n);
@@ -272,9 +284,10 @@ std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
   for (const std::size_t n : changes.mesh_bricks)
     if (bricks.active(n) && !bricks.active(n)->pulled.empty()) others.push_back(n);
   base::sort_unique(others);
+  out.shaded = around(others, -1, 1);  // at vertices next to those
   others = around(others, 0, 1);
   changed.insert(changed.end(), others.begin(), others.end());
-  return changed;
+  return out;
 }
 
 void MeshState::follow(const Volume& now) {

@@ -28,7 +28,8 @@ struct MeshState {
   MeshState(const Volume& volume, bool room, const Progress& progress);
   /// Leaves out the triangles that are not needed for `tolerance` (mm, > 0), now and, with room, after each update.
   void simplify(double tolerance, const Progress& progress);
-  std::vector<std::size_t> update(const Volume& now);
+  /// `normals`: also returns the bricks whose triangles are the same, but whose normals at corners may differ.
+  std::vector<std::size_t> update(const Volume& now, bool normals);
   /// Throws std::runtime_error after an update that threw, because the state is then no mesh.
   void check_whole() const;
   std::vector<std::size_t> active_bricks() const;
@@ -45,7 +46,11 @@ struct MeshState {
   Mesh compact_full() const;
   void build(const Progress& progress);
   void follow(const Volume& now);
-  std::vector<std::size_t> mesh_again(const Changes& changes);
+  /// Bricks whose triangles, or whose normals at corners, may be others than before.
+  struct Renewed {
+    std::vector<std::size_t> meshed, shaded;
+  };
+  Renewed mesh_again(const Changes& changes);
   void read_signs_again(const std::vector<std::size_t>& changed);
   void place_again(std::size_t brick);
   void give_place(ActiveBrick& brick);

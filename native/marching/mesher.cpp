@@ -49,8 +49,8 @@ Mesher::~Mesher() = default;
 Mesher::Mesher(Mesher&&) noexcept = default;
 Mesher& Mesher::operator=(Mesher&&) noexcept = default;
 
-std::vector<std::size_t> Mesher::update(const Volume& volume) {
-  return state_->update(volume);
+std::vector<std::size_t> Mesher::update(const Volume& volume, bool normals) {
+  return state_->update(volume, normals);
 }
 
 std::vector<std::size_t> Mesher::patches() const {
@@ -86,7 +86,7 @@ MeshPatch Mesher::patch(std::span<const std::size_t> bricks) const {
 
 base::BulkVector<Vec3f> Mesher::corner_normals(const MeshPatch& patch, double sharp) const {
   state_->check_whole();
-  return marching::corner_normals(*state_, patch.bricks, patch, sharp);
+  return marching::corner_normals(*state_, patch, sharp);
 }
 
 Mesh Mesher::mesh() const {

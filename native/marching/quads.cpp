@@ -36,9 +36,7 @@ VertexChoice& Surface::special(const CellVertex& v) {
                            [](const VertexChoice& s, const CellVertex& w) { return s.at < w; });
 }
 
-namespace {
-
-void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std::vector<QuadRef>& out) {
+void append_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std::vector<QuadRef>& out) {
   const Bricks& bricks = surface.bricks;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = cell.x; i <= cell.x + (axis != 0); ++i)
@@ -57,14 +55,12 @@ void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std
   }
 }
 
-}  // namespace
-
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
   constexpr std::size_t chunk = 1024;
   std::vector<std::vector<QuadRef>> parts((cells.size() + chunk - 1) / chunk);
   base::parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<QuadRef>& found = parts[begin / chunk];
-    for (std::size_t n = begin; n < end; ++n) add_quads(surface, cells[n], mark, found);
+    for (std::size_t n = begin; n < end; ++n) append_quads(surface, cells[n], mark, found);
     base::sort_unique(found);
   });
   std::vector<QuadRef> all;

@@ -69,6 +69,9 @@ struct Surface {
 /// The cell whose vertex is corner n of the edge's quad.
 Vec3i corner_cell(const LatticeEdge& edge, int n);
 
+/// Appends the quads of a cell's edges with a corner that has the mark (kAnyMark: all of them).
+void append_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std::vector<QuadRef>& out);
+
 /// Quads of these cells' edges with a corner that has the mark (kAnyMark: all quads), ascending.
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark);
 

@@ -31,8 +31,7 @@ class StrokeRecord:
     token: str = field(default_factory=lambda: uuid4().hex)  # of the resulting state
     moves: list[Moves] = field(default_factory=list)
     shaped: bool = False  # other operations than cuts have changed the material
-    swept: list[Extent] = field(default_factory=list)  # regions of the material that tools may have touched
-    painted: list[Extent] = field(default_factory=list)  # and of the mask
+    painted: list[Extent] = field(default_factory=list)  # regions of the mask that tools may have touched
     apart: set[int] = field(default_factory=set)  # copies whose last moves were kept out
 
     def cut(self, copy: int, tool, mode: str, poses: np.ndarray, new: bool) -> None:

@@ -2880,7 +2880,7 @@ class Mesher:
         >>> mesher.take_counters().rays, mesher.counters.rays
         (1, 0)
         """
-    def update(self, volume: Volume) -> list[int]:
+    def update(self, volume: Volume, *, normals: bool = False) -> list[int]:
         """
         Follows a change of the volume.
 
@@ -2888,6 +2888,9 @@ class Mesher:
         ----------
         volume : Volume
             As it is now.
+        normals : bool
+            Also return the bricks whose triangles are the same, but whose ``patch(normals=...)`` may have other normals, since
+            they meet changed ones.
 
         Returns
         -------

@@ -33,8 +33,9 @@ class Mesher {
   /// Re-meshes the bricks that have changed and returns the numbers of those whose patch differs now, ascending. The
   /// cost depends on the size of the change and the number of tiles, not on the size of the mesh. Throws
   /// std::invalid_argument for a volume with another frame. If it fails for another reason (memory, more than 2³¹
-  /// triangles), the mesher has no mesh, and reading it throws std::runtime_error until an update succeeds.
-  std::vector<std::size_t> update(const Volume& volume);
+  /// triangles), the mesher has no mesh, and reading it throws std::runtime_error until an update succeeds. `normals`:
+  /// also returns the bricks whose triangles are the same, but whose corner_normals may differ, next to changed ones.
+  std::vector<std::size_t> update(const Volume& volume, bool normals = false);
 
   /// Numbers of the bricks that have triangles, ascending.
   std::vector<std::size_t> patches() const;
