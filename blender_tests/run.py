@@ -6,10 +6,10 @@
 
 Each (Blender, installation mode), and each script of a window, is one process with a time limit; a few run at a time.
 Installation modes: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
-source folder. One Blender also tests from the source folder what depends on the installation mode, or everything if
---blender or --mode names it. Tests whose time is spent in the core (common.core_bound) run in the oldest and the newest
-Blender, and in any that --blender or --mode names. Ends with the costliest tests and the numbers of passed, failed and
-skipped tests, with reasons; exit code 1 if one failed.
+source folder. Blender 4.5 tests what depends on the installation mode, from the zip and from the source folder, or
+everything if --blender or --mode names it. Tests whose time is spent in the core (common.core_bound) run in the oldest
+and the newest Blender, and in any that --blender or --mode names. Ends with the costliest tests and the numbers of
+passed, failed and skipped tests, with reasons; exit code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ import package  # noqa: E402 (the zips are built by what builds them for users)
 # Processes, of a gigabyte each; windows and pens are idle for half of their time.
 AT_ONCE = min(3, 2 * (os.cpu_count() or 1))
 FIRST_DISPLAY = int(os.environ.get("FD", "90"))
-FROM_SOURCE = (4, 5)  # the Blender that also tests the source folder
-# Tests that may depend on the add-on's folder and module name; the rest is the same code as in the extension, which the
-# same Blender tests completely.
+# The Blender that tests the add-on's ways of installing: from the zip and from the source folder. Otherwise it repeats
+# the newest one, as it takes the same branches of addon/blender/versions.py (core/test_core_bound.py).
+OF_INSTALLING = (4, 5)
+# Tests that may depend on the add-on's folder and module name; the rest is the same code in both.
 OF_THE_PLACE = ("lifecycle", "preferences", "recovery", "operators", "tools", "messages")
 SLOWEST = 20
 END = 8  # lines of a message repeated at the end, where they are read first
@@ -262,18 +263,26 @@ def main() -> int:
             validate(bench)
         if not arguments.only:
             compile_modules(bench, Path(folder) / "compiled", arguments.blender)
-        runs = []
+        quiet, drawn = [], []
         if not arguments.no_headless:
-            runs += headless(bench, arguments)
+            quiet += headless(bench, arguments)
             if arguments.mode in (None, "source"):
-                runs += soak_runs.runs(bench, arguments)
+                quiet += soak_runs.runs(bench, arguments)
         if not arguments.no_window:
-            runs += windowed(bench, arguments)
+            drawn += windowed(bench, arguments)
+        runs = mixed(quiet, drawn)
         with ThreadPoolExecutor(1 if arguments.figures else AT_ONCE) as pool:
             list(pool.map(lambda run: run(), runs))
     if bench.figures:
         (out / "figures.json").write_text(json.dumps(bench.figures, indent=1) + "\n")
     return close(tally)
+
+
+def mixed(quiet: list, drawn: list) -> list:
+    """Both lists as one, each in its order and evenly spread: windows wait for half of their time, and processes
+    without one use it."""
+    places = [(k / len(some), some is drawn, run) for some in (quiet, drawn) for k, run in enumerate(some)]
+    return [run for _, _, run in sorted(places, key=lambda place: place[:2])]
 
 
 def compile_modules(bench: Bench, folder: Path, named: str) -> None:
@@ -302,13 +311,14 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
     ends = usable[:1] + usable[-1:]
     bench.ends = " and ".join(environment.name for environment in ends)
     for environment in usable:
-        more = {"leave_out": environment not in ends and not (arguments.blender or arguments.mode)}
+        repeats = environment not in ends and not (arguments.blender or arguments.mode)
+        more = {"leave_out": repeats}
         for mode in modes(environment, arguments):
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
                 continue
             chosen = files
-            if mode == "source" and not (arguments.mode or arguments.blender):
+            if repeats and environment.version[:2] == OF_INSTALLING:
                 chosen = [file for file in files if file.stem.removeprefix("test_") in OF_THE_PLACE]
             runs.append(partial(bench.run, environment, mode, chosen, more))
         if arguments.mode in (None, "source"):
@@ -325,7 +335,7 @@ def modes(environment: Environment, arguments) -> list[str]:
     found = ["source", "extension" if environment.extensions else "legacy"]
     if arguments.mode:
         return [mode for mode in found if mode == arguments.mode]
-    return found if arguments.blender or environment.version[:2] == FROM_SOURCE else found[1:]
+    return found if arguments.blender or environment.version[:2] == OF_INSTALLING else found[1:]
 
 
 def chain(bench: Bench, usable: list[Environment]) -> None:

@@ -15,6 +15,7 @@ import run  # noqa: E402
 
 from support import environments  # noqa: E402 (the path first)
 
+ALL = len(list((HERE / "headless").rglob("test_*.py")))
 # What differs between Blender's versions: tests that use it run in all of them.
 DIFFERS = ("bpy.ops.ed.", "open_mainfile", "frame_set", "attributes", "insert(")
 
@@ -37,8 +38,8 @@ def test_no_marked_test_uses_features_that_differ_between_versions():
 
 
 def jobs(monkeypatch, capsys, versions, **more):
-    """(Blender, installation mode, whether marked tests are left out) of each process, and the runs' output for three
-    tests left out by each."""
+    """(Blender, installation mode, number of files, whether marked tests are left out) of each process, and the runs'
+    output for three tests left out by each."""
     found = [environments.Environment(f"bpy {v}", tuple(map(int, v.split("."))), ["bpy"]) for v in versions]
     found.append(environments.Environment("bpy 9.9", (9, 9), [], "not there"))
     monkeypatch.setattr(environments, "find", lambda: found)
@@ -46,7 +47,7 @@ def jobs(monkeypatch, capsys, versions, **more):
 
     def execute(command, variables, timeout):
         job = json.loads(Path(variables["RIFFLER_TEST_JOB"]).read_text())
-        seen.append(bool(job.get("leave_out")))
+        seen.append((bool(job.get("leave_out")), len(job["files"])))
         lines = [{"name": "test", "outcome": "passed", "seconds": 0.1, "message": ""}]
         lines += [{"left": 3}] if job.get("leave_out") else []
         return subprocess.CompletedProcess(command, 0, "\n".join(run.MARK + json.dumps(line) for line in lines), "")
@@ -59,19 +60,21 @@ def jobs(monkeypatch, capsys, versions, **more):
         if process.func != bench.run or process.args[1] == "none":
             continue
         process()
-        out.append((process.args[0].name, process.args[1], seen[-1]))
+        left, files = seen[-1]
+        out.append((process.args[0].name, process.args[1], files, left))
     run.close(bench.tally)
     return out, capsys.readouterr().out
 
 
 def test_middle_versions_skip_marked_tests_and_report_where_they_run(monkeypatch, capsys):
     found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"])
+    every, some = ALL, len(run.OF_THE_PLACE)
     assert found == [
-        ("bpy 3.4", "legacy", False),
-        ("bpy 4.2", "extension", True),
-        ("bpy 4.5", "source", True),
-        ("bpy 4.5", "extension", True),
-        ("bpy 5.0", "extension", False),
+        ("bpy 3.4", "legacy", every, False),
+        ("bpy 4.2", "extension", every, True),
+        ("bpy 4.5", "source", some, True),
+        ("bpy 4.5", "extension", some, True),
+        ("bpy 5.0", "extension", every, False),
     ]
     line = "bpy 4.2, extension: tests that run in bpy 3.4 and bpy 5.0 only, because their time goes into the core: 3"
     assert said.count(line) == 2, "as it ends, and in the summary"
@@ -81,9 +84,28 @@ def test_middle_versions_skip_marked_tests_and_report_where_they_run(monkeypatch
 def test_a_named_blender_runs_everything(monkeypatch, capsys, more):
     found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"], **more)
     assert found and not any(left for *_, left in found) and "left out" not in said
+    assert {files for *_, files, _ in found} == {ALL}
 
 
 def test_one_or_two_blenders_run_everything(monkeypatch, capsys):
     for versions in (["4.5"], ["4.2", "4.5"]):
         found, _ = jobs(monkeypatch, capsys, versions)
         assert found and not any(left for *_, left in found)
+        assert {files for *_, files, _ in found} == {ALL}
+
+
+def test_the_blender_of_installing_takes_the_branches_of_the_newest_one():
+    """Each branch by a version is taken since that Blender or an earlier one, so by newer ones as well."""
+    tree = ast.parse((run.ROOT / "addon" / "blender" / "versions.py").read_text())
+    tuples = [
+        ast.literal_eval(node)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Tuple) and ast.unparse(node)[1:2].isdigit()
+    ]
+    since = [version for version in tuples if version[0] >= 3]
+    assert len(since) >= 4 and max(since)[:2] <= run.OF_INSTALLING, since
+
+
+def test_windows_and_processes_without_one_are_spread_evenly():
+    assert run.mixed(list("abc"), list("123456")) == list("a12b34c56")
+    assert run.mixed([], [1, 2]) == [1, 2] and run.mixed([1], []) == [1]
