@@ -209,7 +209,10 @@ def windowed(side, strokes, events, detail="NEEDED"):
         yield lambda: pointer.held is not None
         yield 0.5
         looks.watch(pointer.held)
-        for pixel in way[1:]:
+        # The tool follows a curve through the samples, one behind the pointer.
+        view.send("MOUSEMOVE", "NOTHING", way[1])
+        yield 0.5
+        for pixel in way[2:]:
             view.send("MOUSEMOVE", "NOTHING", pixel)
             # Drawn after the look: a picture before it has the tool's old place.
             yield lambda: looks.looked and view.drawn and view.drawn[0] > looks.looked
