@@ -39,7 +39,7 @@ import package  # noqa: E402 (the zips are built by what builds them for users)
 # Processes, of a gigabyte each; windows and pens are idle for half of their time.
 AT_ONCE = min(3, 2 * (os.cpu_count() or 1))
 FIRST_DISPLAY = int(os.environ.get("FD", "90"))
-# The Blender that tests the add-on's ways of installing: from the zip and from the source folder. Otherwise it repeats
+# The Blender that tests where the add-on is installed: from the zip and from the source folder. Otherwise it repeats
 # the newest one, as it takes the same branches of addon/blender/versions.py (core/test_core_bound.py).
 OF_INSTALLING = (4, 5)
 # Tests that may depend on the add-on's folder and module name; the rest is the same code in both.
