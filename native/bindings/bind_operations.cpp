@@ -238,9 +238,10 @@ void bind_operations(py::module_& m) {
       "cut_along",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
          const Tool& tool, const ArrayLike& axis, double clearance, const ArraysLike& lines, double distance,
-         double tolerance, double max_lift, double feed, double plunge, const ProgressLike& progress) {
+         std::optional<double> fixture_distance, double tolerance, double max_lift, double feed, double plunge,
+         const ProgressLike& progress) {
         tool.require_revolved("operations");
-        const plan::CutAlongOptions options{distance, tolerance, max_lift, feed, plunge};
+        const plan::CutAlongOptions options{distance, tolerance, max_lift, feed, plunge, fixture_distance};
         std::vector<plan::CutLine> cuts;
         for (const py::handle line : lines)
           cuts.push_back({to_poses(py::cast<Doubles>(line), ("lines[" + std::to_string(cuts.size()) + "]").c_str())});
@@ -250,7 +251,8 @@ void bind_operations(py::module_& m) {
                          });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "lines"_a,
-      "distance"_a, "tolerance"_a, "max_lift"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.along_poses.");
+      "distance"_a, "fixture_distance"_a, "tolerance"_a, "max_lift"_a, "feed"_a, "plunge"_a, "progress"_a,
+      "For riffler.plan.along_poses.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

@@ -24,9 +24,12 @@ constexpr double kTurn = kPi / 18;    // rad, largest turn between two rapids
 constexpr double kSlack = 1e-6;       // rad
 constexpr std::size_t kEntries = 32;  // parts of a piece between which the tool may come down
 constexpr double kAllOfIt = 1e-6;
+constexpr double kShortest = 0.25;  // mm, up to which a move that meets a fixture is divided
+constexpr std::size_t kEvaluations = 100'000;
 
 void check(const CutAlongOptions& o) {
   base::require(std::isfinite(o.distance), "distance", "must be finite");
+  base::require(std::isfinite(o.fixture_distance.value_or(0)), "fixture_distance", "must be finite");
   base::require_tolerance(o.tolerance);
   base::require_not_negative(o.max_lift, "max_lift", base::kFiniteAndNotNegative);
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
@@ -125,6 +128,60 @@ std::vector<Piece> pieces_of(const CutLine& line, const CutterLocations& found, 
   }
   add_run(std::move(run), pieces);
   return pieces;
+}
+
+/// The parts of a piece that keep a distance of `wanted` from the fixtures. Adds the others to `blocked`.
+std::vector<Piece> clear_of_fixtures(const Piece& piece, const collide::Assembly& tool,
+                                     const collide::Collider& fixtures, double wanted,
+                                     std::vector<BlockedPlace>& blocked) {
+  std::vector<Piece> out;
+  Piece run;
+  const auto begin_at = [&](const Pose& pose) { run = {{pose}, {MoveKind::Cut}, {}, {}}; };
+  begin_at(piece.poses.front());
+  for (std::size_t k = 1; k < piece.poses.size(); ++k) {
+    std::vector<Pose> ahead{piece.poses[k]};  // the next on top: halves of the move
+    while (!ahead.empty()) {
+      const Pose here = run.poses.back(), next = ahead.back();
+      const Motion motion(here, next);
+      // A tool entirely inside a fixture touches none of its surface.
+      const bool clear = fixtures.sweep(tool, motion, wanted, kEvaluations).answer == collide::Swept::Answer::Clear &&
+                         !fixtures.inside_part(here.tip + 0.5 * tool.tool().length() * here.axis);
+      if (clear) {
+        run.poses.push_back(next), run.kinds.push_back(piece.kinds[k]);
+        ahead.pop_back();
+      } else if (const double length = glm::length(next.tip - here.tip); length > kShortest) {
+        ahead.push_back(motion.at(0.5));
+      } else {
+        block(blocked, "the tool meets a fixture", here.tip, length);
+        add_run(std::move(run), out);
+        begin_at(next);
+        ahead.pop_back();
+      }
+    }
+  }
+  add_run(std::move(run), out);
+  return out;
+}
+
+/// The same for all pieces.
+std::vector<Piece> clear_of_fixtures(const std::vector<Piece>& pieces, const collide::Assembly& tool,
+                                     const collide::Collider& fixtures, double wanted, const Progress& progress,
+                                     CutAlongResult& out) {
+  std::vector<std::vector<Piece>> found(pieces.size());
+  std::vector<std::vector<BlockedPlace>> blocked(pieces.size());
+  base::parallel_for(
+      pieces.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+          found[k] = clear_of_fixtures(pieces[k], tool, fixtures, wanted, blocked[k]);
+      },
+      progress);
+  std::vector<Piece> kept;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    for (Piece& one : found[k]) kept.push_back(std::move(one));
+    for (const BlockedPlace& one : blocked[k]) block(out.blocked, one.reason, one.place, one.length);
+  }
+  return kept;
 }
 
 double largest_tilt(const std::vector<Piece>& pieces, const Vec3& up) {
@@ -259,15 +316,23 @@ CutAlongResult cut_lines(const SetupScene& scene, const Tool& tool, const std::v
   const LocationRule rule{options.distance, options.tolerance, options.max_lift};
   std::vector<Piece> pieces;
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    const double share = 0.8 / static_cast<double>(lines.size());
+    const double share = 0.7 / static_cast<double>(lines.size());
     const Progress here = base::part(progress, share * static_cast<double>(k), share * static_cast<double>(k + 1));
     for (Piece& piece : pieces_of(lines[k], cutter_locations(lines[k].poses, assembly, part, rule, here), out))
       pieces.push_back(std::move(piece));
   }
+  std::unique_ptr<collide::Collider> fixtures;
+  if (options.fixture_distance && !scene.fixtures.empty()) {
+    fixtures = std::make_unique<collide::Collider>(joined({}, scene.fixtures));
+    pieces = clear_of_fixtures(pieces, assembly, *fixtures, *options.fixture_distance - options.tolerance,
+                               base::part(progress, 0.7, 0.8), out);
+  }
   const Mesh left = turned_stock(scene, Mat3(1));
   const std::unique_ptr<collide::Collider> stock = left.empty() ? nullptr : std::make_unique<collide::Collider>(left);
   const double level = plane + depth_below_tip(tool, largest_tilt(pieces, up));
-  const PoseLeads leads({part, stock.get(), up, options.distance, options.tolerance}, tool);
+  const PoseLeads leads({part, stock.get(), up, options.distance, options.tolerance, fixtures.get(),
+                         options.fixture_distance.value_or(0)},
+                        tool);
   const Progress leading = base::part(progress, 0.8, 1);
   pieces = with_leads(pieces, leads, level, leading, out);
   PoseWriter writer(out, options);
@@ -279,7 +344,9 @@ CutAlongResult cut_lines(const SetupScene& scene, const Tool& tool, const std::v
 
 CutAlongResult cut_along(const SetupScene& scene, const Tool& tool, const std::vector<CutLine>& lines,
                          const CutAlongOptions& options, const Progress& progress) {
-  return cut_lines(scene, tool, lines, options, collide::Collider(joined(scene.part, scene.fixtures)), progress);
+  const std::vector<Mesh> none;
+  const collide::Collider part(joined(scene.part, options.fixture_distance ? none : scene.fixtures));
+  return cut_lines(scene, tool, lines, options, part, progress);
 }
 
 }  // namespace riffler::plan

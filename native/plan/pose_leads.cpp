@@ -102,6 +102,7 @@ std::optional<Lead> PoseLeads::along(const Pose& pose, const Vec3& direction, do
     return of.sweep(what, motion, wanted, kEvaluations).answer == collide::Swept::Answer::Clear;
   };
   if (!clear(scene_.part, tool_, 0, scene_.distance - scene_.tolerance)) return {};
+  if (scene_.fixtures && !clear(*scene_.fixtures, tool_, 0, scene_.fixture_distance - scene_.tolerance)) return {};
   const bool own = direction == pose.axis;
   if (!scene_.stock || (!in && own && widens_)) return Lead{top.tip, pose.tip};
   if (body_ && !(!in && own && body_widens_) && !clear(*scene_.stock, *body_, body_height_, 0)) return {};

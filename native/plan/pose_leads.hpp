@@ -13,10 +13,12 @@ namespace riffler::plan {
 
 /// Heights are measured along `up`, the set-up's axis.
 struct LeadScene {
-  const collide::Collider& part;   ///< part and fixtures
+  const collide::Collider& part;   ///< part and fixtures, or the part alone
   const collide::Collider* stock;  ///< before the operation; null: none is left
   Vec3 up;
-  double distance, tolerance;  ///< of all of the tool from part and fixtures, mm: see CutAlongOptions
+  double distance, tolerance;                   ///< of all of the tool from `part`, mm: see CutAlongOptions
+  const collide::Collider* fixtures = nullptr;  ///< null: `part` has them, or there are none
+  double fixture_distance = 0;                  ///< of all of the tool from `fixtures`, mm
 };
 
 /// Pieces of shank and holder as a tool whose tip is the lower end of the lowest piece, and the height of that end;

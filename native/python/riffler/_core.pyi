@@ -6634,7 +6634,7 @@ def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: numpy.typing.ArrayLike | None) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def cut_along(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, lines: collections.abc.Iterable[numpy.typing.ArrayLike], distance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+def cut_along(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, lines: collections.abc.Iterable[numpy.typing.ArrayLike], distance: typing.SupportsFloat, fixture_distance: typing.SupportsFloat | None, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
     """
     For riffler.plan.along_poses.
     """

@@ -124,5 +124,29 @@ TEST(CutAlong, DividesALineAtAPostAndListsIt) {
   EXPECT_GE(found.poses.back().tip.z, 15);
 }
 
+TEST(CutAlong, EndsAtFixturesWhoseDistanceIsNotThatOfThePart) {
+  // One millimetre deep in the part, through a post, and inside a block that holds the whole tool.
+  const SetupScene scene{mesh::box_mesh({-20, -20, -5}, {20, 20, 0}),
+                         {mesh::box_mesh({-2, -2, 0}, {2, 2, 10}), mesh::box_mesh({-20, 8, 0}, {20, 20, 80})},
+                         Volume::block({{{-20, -20, -5}, {20, 20, 0}}, 1, "xyz"})};
+  CutAlongOptions options;
+  options.distance = -1, options.tolerance = 0.02, options.fixture_distance = 0;
+  const CutAlongResult found =
+      cut_along(scene, cutters::ball(4, 30),
+                {{{{{-15, 0, -1}, kUp}, {{15, 0, -1}, kUp}}}, {{{{-5, 14, 20}, kUp}, {{5, 14, 20}, kUp}}}}, options);
+  EXPECT_EQ(found.pieces, 2U);
+  ASSERT_EQ(found.blocked.size(), 1U);
+  EXPECT_NE(found.blocked.front().reason.find("fixture"), std::string::npos);
+  EXPECT_NEAR(found.blocked.front().length, 10 + 8, 1);
+  double cut = 0;
+  for (std::size_t k = 0; k < found.poses.size(); ++k)
+    if (found.kinds[k] == MoveKind::Cut) {
+      EXPECT_GE(std::abs(found.poses[k].tip.x), 4 - std::sqrt(2 * 2 * 0.02) - 1e-3);
+      EXPECT_EQ(found.poses[k].tip.y, 0);
+      cut += glm::length(found.poses[k].tip - found.poses[k - 1].tip);
+    }
+  EXPECT_NEAR(cut, 22, 1);
+}
+
 }  // namespace
 }  // namespace riffler::plan::cut_along_test

@@ -57,6 +57,18 @@ def test_engraving_on_a_plate_is_as_deep_as_asked():
     assert setup.stock.volume < before
 
 
+def test_engraving_ends_at_a_clamp_and_lists_it():
+    plate = riffler.Volume.block((0, 0, 0), (40, 30, 10), 0.5).to_mesh()
+    clamp = riffler.Volume.block((18, 0, 10), (24, 30, 16), 0.5).to_mesh()
+    setup = plan.Setup(plate, riffler.Volume.block((0, 0, 0), (40, 30, 10), 0.25), fixtures=[clamp])
+    op = plan.engrave_operation(setup, BIT, [[(5, 10, 10), (35, 10, 10)], [(20, 20, 10), (22, 20, 10)]], depth=0.3)
+    ends = np.sort(op.poses[op.kind == 2][:, 0])
+    assert ((ends < 18) | (ends > 24)).all() and ends[0] < 18 < 24 < ends[-1]
+    assert [one.reason for one in op.report.blocked] == ["the tool meets a fixture"]
+    assert op.report.cut_mm + op.report.blocked[0].length == pytest.approx(32, abs=1e-6)
+    assert len(plan.program(setup, [op])) == len(op)
+
+
 @pytest.mark.parametrize("orientation", [None, "normal", (0.2, 0.0)])
 def test_engraving_a_dome_goes_no_deeper_than_asked(orientation):
     part = dome()

@@ -40,7 +40,7 @@ def engrave_operation(
     Each curve is projected onto the part, and the cutter touches the plane ``depth`` below the surface there. Nothing
     is deeper in the part than depth + tolerance, by a bound over each move; shank and holder stay out of it. Places
     where the cutter would be deeper, as in hollows narrower than the cutter, are left out and listed in
-    ``report.blocked``, as are faces that look away from the tool.
+    ``report.blocked``, as are places where the tool would meet a fixture, and faces that look away from the tool.
 
     Parameters
     ----------

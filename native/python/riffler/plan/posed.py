@@ -34,15 +34,16 @@ def along_poses(
     exact: ExactFit | None = None,
     progress: Progress = None,
 ) -> Operation:
-    """An operation that cuts lines of poses (n, 6), at most ``engraved`` + ``tolerance`` mm deep in part or fixtures.
-    Poses that no lift up to ``max_lift`` mm frees are left out. ``blocked`` and ``stats`` are added to the report;
-    ``reason``: why there are no lines. ``exact``: how the lines were moved onto the set-up's exact surface; they may
-    then enter the part's triangles by as much as these may lie outside of it."""
+    """An operation that cuts lines of poses (n, 6), at most ``engraved`` + ``tolerance`` mm deep in the part and
+    ``tolerance`` mm in fixtures. Poses that no lift up to ``max_lift`` mm frees are left out. ``blocked`` and ``stats``
+    are added to the report; ``reason``: why there are no lines. ``exact``: how the lines were moved onto the set-up's
+    exact surface; they may then enter the part's triangles by as much as these may lie outside of it."""
     for name, value in (("feed", feed), ("plunge", plunge)):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} must be positive and finite, not {value}")
     kept, more = _within_reach(setup, lines)
     # Shank and holder stay out of the part, although the cutter enters it.
+    below = engraved + (GREATER * setup.deviation if exact is not None else 0.0)
     checked = tool.with_margins(shank=engraved, holder=engraved) if engraved > 0 else tool
     moves = _core.cut_along(
         setup.part,
@@ -52,7 +53,8 @@ def along_poses(
         axis=setup.axis,
         clearance=setup.clearance,
         lines=kept,
-        distance=-engraved - (GREATER * setup.deviation if exact is not None else 0.0),
+        distance=-below,
+        fixture_distance=0.0 if below else None,
         tolerance=tolerance,
         max_lift=max_lift,
         feed=feed,
