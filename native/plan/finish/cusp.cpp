@@ -75,4 +75,22 @@ double CutterProfile::spacing(double cusp) const {
   return low;
 }
 
+RowSteps::RowSteps(const CutterProfile& profile, double cusp) {
+  for (int k = 0; k <= kSlopes; ++k) {
+    const double slope = kPi / 2 * k / kSlopes, x = std::cos(slope), z = std::sin(slope);
+    double low = 0, high = profile.radius();
+    for (int i = 0; i < 40; ++i) {
+      const double d = 0.5 * (low + high);
+      (profile.ridge(d * x, d * z) <= cusp ? low : high) = d;
+    }
+    steps_[static_cast<std::size_t>(k)] = low;
+  }
+}
+
+double RowSteps::operator()(double across, double up) const {
+  const double at = std::atan2(std::abs(up), across) / (kPi / 2) * kSlopes;
+  const auto k = static_cast<std::size_t>(std::min(at, kSlopes - 1.0));
+  return std::min(steps_[k], steps_[k + 1]);
+}
+
 }  // namespace riffler::plan

@@ -1,6 +1,7 @@
 // Height of the ridge that a cutter leaves between two places.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "plan/lower_side.hpp"
@@ -29,6 +30,18 @@ class CutterProfile {
   std::vector<LowerSide> sides_;
   std::vector<Vec2> points_;  // of the lower side, (radius, height)
   double radius_ = 0;
+};
+
+/// Distance of two rows that leave the cusp, mm, depending on the slope between them.
+class RowSteps {
+ public:
+  RowSteps(const CutterProfile& profile, double cusp);
+  /// `across`, `up`: level and upright part of the step from one row to the other, in any unit.
+  double operator()(double across, double up) const;
+
+ private:
+  static constexpr int kSlopes = 64;
+  std::array<double, kSlopes + 1> steps_{};
 };
 
 }  // namespace riffler::plan

@@ -12,6 +12,7 @@
 #include "plan/finish/order.hpp"
 #include "plan/finish/oriented.hpp"
 #include "plan/finish/patterns.hpp"
+#include "plan/finish/uncut_faces.hpp"
 #include "plan/operation_moves.hpp"
 #include "plan/row_axes.hpp"
 #include "riffler/base/check.hpp"
@@ -170,8 +171,9 @@ FinishResult finish(const SetupScene& scene, const Tool& given, const FinishOpti
   const double found = options.axes ? 0.4 : 0.8;  // share of the progress
   std::optional<Vec2> centre;
   if (options.centre) centre = Vec2(*options.centre * frame);
-  PatternRows rows =
-      pattern.rows({surface, profile, tool, options, mesh::bounds(part), centre}, base::part(progress, 0, found));
+  const PatternScene pattern_scene{surface, profile, tool, options, mesh::bounds(part), centre};
+  PatternRows rows = pattern.rows(pattern_scene, base::part(progress, 0, 0.8 * found));
+  cut_uncut_faces(pattern_scene, rows, base::part(progress, 0.8 * found, found));
   FinishResult out;
   out.blocked = rows.blocked, out.rows = rows.rows, out.added = rows.added;
   for (BlockedPlace& one : out.blocked) one.place = frame * one.place;

@@ -38,6 +38,7 @@ struct PatternRows {
   std::size_t rows = 0, added = 0;
   double spacing = 0;       ///< distance of rows on level faces, mm
   bool descending = false;  ///< pieces keep their direction and are cut from the top downwards; links are straight
+  double least_slope = 0;   ///< rad: flatter faces are left to other patterns
   std::string reason;       ///< why there are no pieces, if the pattern itself is the cause
 };
 

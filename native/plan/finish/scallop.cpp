@@ -25,33 +25,8 @@ constexpr double kFirstRow = 0.25;  // distance from the border in rows: the bor
 constexpr double kFinestRow = 1.0 / 128;
 constexpr double kSteepestFace = 1.3;  // rad: on steeper faces neighbouring places are too far apart on the surface
 constexpr double kLikeCurves = 0.05;   // tolerance for leaving out points of curves, as a share of the grid's spacing
-constexpr int kSlopes = 64;
 constexpr double kMostScallopPlaces = 2e6;
 constexpr const char* kSteeper = "scallop: faces steeper than 74° are left to waterline";
-
-/// Distance of two rows that leave the cusp, mm, depending on the slope between them.
-class RowSteps {
- public:
-  RowSteps(const CutterProfile& profile, double cusp) {
-    for (int k = 0; k <= kSlopes; ++k) {
-      const double slope = kPi / 2 * k / kSlopes, x = std::cos(slope), z = std::sin(slope);
-      double low = 0, high = profile.radius();
-      for (int i = 0; i < 40; ++i) {
-        const double d = 0.5 * (low + high);
-        (profile.ridge(d * x, d * z) <= cusp ? low : high) = d;
-      }
-      steps_[static_cast<std::size_t>(k)] = low;
-    }
-  }
-  double operator()(double across, double up) const {
-    const double at = std::atan2(std::abs(up), across) / (kPi / 2) * kSlopes;
-    const auto k = static_cast<std::size_t>(std::min(at, kSlopes - 1.0));
-    return std::min(steps_[k], steps_[k + 1]);
-  }
-
- private:
-  std::array<double, kSlopes + 1> steps_{};
-};
 
 /// Distance of each place from the border of the set of places, by fast marching over triangles of neighbouring places
 /// (Kimmel and Sethian, PNAS 95 (1998) 8431). The method needs only the lengths of the triangles' sides.

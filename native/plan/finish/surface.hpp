@@ -50,6 +50,8 @@ class FinishSurface {
   bool wanted_face(int triangle, const Vec3& point, double slope) const;
   /// Whether there is a crease between the faces of the part that the cutter touches at two points.
   bool creased(const SurfacePoint& a, const SurfacePoint& b) const;
+  /// Unit normal of a triangle of the part, upwards.
+  const Vec3& face_normal(int triangle) const { return normals_[static_cast<std::size_t>(triangle)]; }
   /// Slope (rad from level) of a triangle of the part.
   double face_slope(int triangle) const;
   /// Slope (rad) of the tangent plane where a cutter with a round tip touches face or edge; for other cutters the slope

@@ -183,7 +183,7 @@ PatternRows waterline_rows(const PatternScene& scene, const Progress& progress) 
                        foot};
   PatternRows out = field_rows(scene, field, base::part(progress, (kFiner + 1) * kGridShare, 1));
   if (!unseen.empty()) add_blocked({{kNarrow, unseen.front(), 0}}, out.blocked);
-  out.descending = true;
+  out.descending = true, out.least_slope = least;
   if (out.pieces.empty()) out.reason = why_none(scene, least);
   return out;
 }
