@@ -34,6 +34,7 @@ void usage() {
       "  --journal FILE     with --session: write it as a .rjournal, a stroke a move\n"
       "  --first-session N  start there, to continue a run that was cut short; a session has 16 moves (0)\n"
       "  --compare-every N  moves from one comparison with the reference to the next (8)\n"
+      "  --straight         three directions and no move that turns\n"
       "  --table            errors by cutter and kind of degeneracy\n"
       "Cutters:");
   for (const char* cutter : cutter_names()) std::printf(" %s", cutter);
@@ -43,6 +44,7 @@ void usage() {
 Arguments parse(int argc, char** argv) {
   Arguments out;
   each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--straight") return out.options.straight = true, Takes::Flag;
     if (option == "--table") return out.table = true, Takes::Flag;
     if (option == "--moves")
       out.moves = static_cast<long>(whole_number(option, value));

@@ -63,14 +63,14 @@ class CarvingSession {
       : options_(options),
         judge_(options.seed ^ kJudge, stream, number),
         random_(options.seed, stream, number),
-        stage_(draw_stage(random_, cutter)),
+        stage_(draw_stage_for(options, random_, cutter)),
         volume_(Volume::block(stage_.frame)),
         full_(volume_.volume()) {}
 
   /// Draws and carves one move and checks it.
   Problem step(Tally& tally) {
     if (volume_.volume() < 0.1 * full_) volume_ = Volume::block(stage_.frame);
-    moves_.push_back(draw_move(random_, stage_, volume_, moves_));
+    moves_.push_back(draw());
     ++tally.moves;
     const Move& move = moves_.back();
     const bool again = random_.one_in(kRepeatEvery);
@@ -129,6 +129,19 @@ class CarvingSession {
   int moves() const { return static_cast<int>(moves_.size()); }
 
  private:
+  static Stage draw_stage_for(const Options& options, Random& random, const std::string& cutter) {
+    Stage stage = draw_stage(random, cutter);
+    if (options.straight) stage.frame.directions = "xyz";
+    return stage;
+  }
+
+  Move draw() {
+    for (;;) {
+      const Move move = draw_move(random_, stage_, volume_, moves_);
+      if (!options_.straight || Motion(move.from, move.to).angle() == 0) return move;
+    }
+  }
+
   static sweep::CarveOptions options_for(const Move& move) {
     sweep::CarveOptions options;
     options.tolerance = move.tolerance;
@@ -209,8 +222,8 @@ void run_session(const Options& options, const std::string& cutter, std::uint64_
     if (!problem.empty()) ++out.kinds[static_cast<std::size_t>(s.last().kind)].failures;
   }
   if (!problem.empty() && out.failures.size() < kSessionsKept)
-    out.failures.push_back(
-        {cutter, options.seed, session, s.moves() - 1, s.last().kind, problem + "\n" + describe(s.stage(), s.last())});
+    out.failures.push_back({cutter, options.straight, options.seed, session, s.moves() - 1, s.last().kind,
+                            problem + "\n" + describe(s.stage(), s.last())});
 }
 
 session::Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session) {
@@ -232,8 +245,8 @@ Results run(const Options& options, const std::string& cutter, long moves,
 }
 
 std::string reproducer(const Failure& failure) {
-  return "riffler_stress --cutter " + failure.cutter + " --seed " + std::to_string(failure.seed) + " --session " +
-         std::to_string(failure.session);
+  return std::string("riffler_stress ") + (failure.straight ? "--straight " : "") + "--cutter " + failure.cutter +
+         " --seed " + std::to_string(failure.seed) + " --session " + std::to_string(failure.session);
 }
 
 }  // namespace riffler::stress

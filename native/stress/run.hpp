@@ -17,7 +17,8 @@ struct Options {
   std::uint64_t first_session = 0;  ///< first session; continues an interrupted run
   int compare_every = 8;            ///< mean number of moves between two comparisons with the reference; 0: none
   int compared_rays = 10;           ///< number of changed rays that a comparison checks
-  int threads_every = 8;            ///< sessions between two that are carved again in one call, with 1 and 4 threads
+  bool straight = false;  ///< three directions and no move that turns: many normals with a bound in little time
+  int threads_every = 8;  ///< sessions between two that are carved again in one call, with 1 and 4 threads
 };
 
 inline constexpr int kMovesInSession = 16;
@@ -25,6 +26,7 @@ inline constexpr int kMovesInSession = 16;
 /// A failed check, with the numbers that reproduce it.
 struct Failure {
   std::string cutter;
+  bool straight;
   std::uint64_t seed, session;
   int move;
   Kind kind;
