@@ -1,6 +1,7 @@
 #include "bench/mesh_distance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -33,76 +34,68 @@ double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
   return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
 }
 
-MeshDistance::MeshDistance(const Mesh& mesh) : mesh_(mesh) {
+MeshDistance::MeshDistance(const Mesh& mesh) {
   if (mesh.empty()) throw std::invalid_argument("the mesh has no triangles");
-  const Box3 box = bounds(mesh);
-  // Twice the edge of a triangle of mean area; not so small that flat pieces of large triangles become many.
-  const double even = 2 * std::sqrt(area(mesh) / static_cast<double>(mesh.triangles.size()));
-  side_ = std::max(std::min(even, glm::length(box.size()) / 100), glm::length(box.size()) / 2000);
-  origin_ = box.lower;
-  for (int k = 0; k < 3; ++k) counts_[k] = static_cast<int>(box.size()[k] / side_) + 1;
-  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-    const Vec3i& t = mesh.triangles[n];
-    insert(static_cast<int>(n), mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]);
+  for (const Vec3i& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
+    triangles_.push_back({a, b, c, glm::cross(b - a, c - a)});
   }
+  build(triangles_.begin(), triangles_.end());
 }
 
-Vec3i MeshDistance::cell_of(const Vec3& p) const {
-  Vec3i out;
-  for (int k = 0; k < 3; ++k) {
-    const double at = std::floor((p[k] - origin_[k]) / side_);
-    out[k] = static_cast<int>(std::clamp(at, 0.0, static_cast<double>(counts_[k] - 1)));
-  }
-  return out;
+/// Halves the triangles at the median of their middles along the longest side. Returns the number of the node.
+int MeshDistance::build(std::vector<Corners>::iterator begin, std::vector<Corners>::iterator end) {
+  constexpr std::ptrdiff_t kLeaf = 4;
+  Box3 box, middles;
+  const auto middle = [](const Corners& t) { return t.a + t.b + t.c; };
+  for (auto t = begin; t != end; ++t) box.add(t->a), box.add(t->b), box.add(t->c), middles.add(middle(*t));
+  const auto node = static_cast<int>(nodes_.size());
+  nodes_.push_back({box, -1, static_cast<int>(begin - triangles_.begin()), static_cast<int>(end - begin)});
+  if (end - begin <= kLeaf) return node;
+  const Vec3 size = middles.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto half = begin + (end - begin) / 2;
+  std::nth_element(begin, half, end,
+                   [&](const Corners& s, const Corners& t) { return middle(s)[axis] < middle(t)[axis]; });
+  build(begin, half);
+  const int other = build(half, end);
+  nodes_[node].other = other;
+  return node;
 }
 
-void MeshDistance::insert(int triangle, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Halve the triangle across its longest side until its box is small.
-  const double ab = squared(b - a), bc = squared(c - b), ca = squared(a - c);
-  if (const double longest = std::max({ab, bc, ca}); longest > 4 * side_ * side_) {
-    if (longest > ab && longest == bc) return insert(triangle, b, c, a);
-    if (longest > ab) return insert(triangle, c, a, b);
-    const Vec3 middle = 0.5 * (a + b);
-    insert(triangle, a, middle, c);
-    return insert(triangle, middle, b, c);
-  }
-  const Vec3i from = cell_of(glm::min(glm::min(a, b), c)), to = cell_of(glm::max(glm::max(a, b), c));
-  for (int i = from.x; i <= to.x; ++i)
-    for (int j = from.y; j <= to.y; ++j)
-      for (int k = from.z; k <= to.z; ++k) {
-        std::vector<int>& list = cells_[(static_cast<std::size_t>(i) * counts_.y + j) * counts_.z + k];
-        if (list.empty() || list.back() != triangle) list.push_back(triangle);
-      }
-}
-
-double MeshDistance::in_cell(const Vec3i& cell, const Vec3& p, double least) const {
-  const auto found = cells_.find((static_cast<std::size_t>(cell.x) * counts_.y + cell.y) * counts_.z + cell.z);
-  if (found == cells_.end()) return least;
-  for (const int n : found->second) {
-    const Vec3i& t = mesh_.triangles[n];
-    least = std::min(least, squared_distance(p, mesh_.vertices[t.x], mesh_.vertices[t.y], mesh_.vertices[t.z]));
-  }
-  return least;
-}
-
-double MeshDistance::operator()(const Vec3& p) const {
-  const Vec3i middle = cell_of(p);
-  const Vec3 lower = origin_ + side_ * Vec3(middle);
+double MeshDistance::operator()(const Vec3& p, double enough, int* near) const {
+  struct Entry {
+    int node;
+    double square;
+  };
+  const auto to_box = [&](int n) {
+    return squared(glm::max(Vec3(0), glm::max(nodes_[n].box.lower - p, p - nodes_[n].box.upper)));
+  };
+  std::array<Entry, 64> stack;  // as deep as a tree of 2^31 triangles is
+  int depth = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (int ring = 0; ring <= std::max({counts_.x, counts_.y, counts_.z}); ++ring) {
-    for (int i = std::max(0, middle.x - ring); i <= std::min(counts_.x - 1, middle.x + ring); ++i)
-      for (int j = std::max(0, middle.y - ring); j <= std::min(counts_.y - 1, middle.y + ring); ++j) {
-        const bool wall = std::abs(i - middle.x) == ring || std::abs(j - middle.y) == ring;
-        for (int k = middle.z - ring; k <= middle.z + ring; k += wall || ring == 0 ? 1 : 2 * ring)
-          if (k >= 0 && k < counts_.z) least = in_cell({i, j, k}, p, least);
-      }
-    // Triangles beyond the examined rings are at least as far away as the rings' wall.
-    double wall = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) {
-      if (middle[k] - ring > 0) wall = std::min(wall, p[k] - lower[k] + ring * side_);
-      if (middle[k] + ring < counts_[k] - 1) wall = std::min(wall, lower[k] + (ring + 1) * side_ - p[k]);
+  const auto look_at = [&](int n) {
+    const Corners& t = triangles_[n];
+    const double height = glm::dot(p - t.a, t.normal);
+    if (height * height > 1.0001 * least * squared(t.normal)) return;  // its plane is farther
+    if (const double square = squared_distance(p, t.a, t.b, t.c); square < least) {
+      least = square;
+      if (near) *near = n;
     }
-    if (wall > 0 && least <= wall * wall) break;
+  };
+  if (near) look_at(*near);
+  stack[depth++] = {0, to_box(0)};
+  while (depth > 0 && !(least <= enough * enough)) {
+    const auto [n, square] = stack[--depth];
+    if (square >= least) continue;
+    const Node& node = nodes_[n];
+    if (node.other < 0) {
+      for (int t = node.first; t < node.first + node.count; ++t) look_at(t);
+      continue;
+    }
+    Entry close{n + 1, to_box(n + 1)}, far{node.other, to_box(node.other)};
+    if (far.square < close.square) std::swap(close, far);
+    stack[depth++] = far, stack[depth++] = close;
   }
   return std::sqrt(least);
 }

@@ -1,9 +1,9 @@
-// Distance of points from a mesh, as a reference for meshes: examines every triangle in the nearby cells of a grid.
-// Shares no code with native/mesh.
+// Distance of points from a mesh, as a reference for meshes: a tree of boxes over the triangles. Shares no code with
+// native/mesh.
 #pragma once
 
+#include <limits>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "riffler/mesh/mesh.hpp"
@@ -12,24 +12,28 @@ namespace riffler::bench {
 
 class MeshDistance {
  public:
-  /// Keeps a reference to the mesh. Throws std::invalid_argument for a mesh without triangles.
+  /// Copies the triangles. Throws std::invalid_argument for a mesh without triangles.
   explicit MeshDistance(const Mesh& mesh);
 
-  /// Distance from `p` to the nearest triangle, mm; meant for points that are close to the mesh.
-  double operator()(const Vec3& p) const;
+  /// Distance from `p` to the nearest triangle, mm. If that is at most `enough`, returns any distance between it and
+  /// `enough`: for the largest distance of many points, `enough` is the largest so far. `near`: where given, the
+  /// triangle that is tried first, and becomes the nearest one found; at the start 0.
+  double operator()(const Vec3& p, double enough = 0, int* near = nullptr) const;
   std::vector<double> operator()(std::span<const Vec3> points) const;
 
  private:
-  Vec3i cell_of(const Vec3& p) const;
-  void insert(int triangle, const Vec3& a, const Vec3& b, const Vec3& c);
-  /// The smallest squared distance to the triangles of one cell, at most `least`.
-  double in_cell(const Vec3i& cell, const Vec3& p, double least) const;
+  struct Corners {
+    Vec3 a, b, c, normal;  // not normalised
+  };
+  /// Children: the next node and `other`; a leaf has triangles from `first` on, and no `other`.
+  struct Node {
+    Box3 box;
+    int other, first, count;
+  };
+  int build(std::vector<Corners>::iterator begin, std::vector<Corners>::iterator end);
 
-  const Mesh& mesh_;
-  Vec3 origin_;
-  double side_;   // of a cell
-  Vec3i counts_;  // cells per axis
-  std::unordered_map<std::size_t, std::vector<int>> cells_;
+  std::vector<Corners> triangles_;  // in the order of the leaves
+  std::vector<Node> nodes_;
 };
 
 /// Squared distance from `p` to the triangle a b c.

@@ -90,21 +90,22 @@ Problem check_volume(const Volume& volume, const Mesh& mesh) {
   return out.str();
 }
 
-/// The largest distance of points of one mesh from another. Each triangle has its corners and points between them, the
+/// The largest distance of points of one mesh from another. Each triangle has its corners and points inside, the
 /// more of them the longer it is compared with the other mesh's triangles.
 double farthest(const Mesh& of, const Mesh& from) {
   constexpr int kMostSteps = 12;
   const bench::MeshDistance distance(from);
   const double step = std::sqrt(area(from) / static_cast<double>(from.triangles.size()));
   double worst = 0;
-  for (const Vec3& v : of.vertices) worst = std::max(worst, distance(v));
+  int near = 0;
+  const auto look_at = [&](const Vec3& p) { worst = std::max(worst, distance(p, worst, &near)); };
   for (const Vec3i& t : of.triangles) {
     const Vec3 &a = of.vertices[t.x], &b = of.vertices[t.y], &c = of.vertices[t.z];
     const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
     const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, static_cast<double>(kMostSteps)));
+    look_at(a), look_at(b), look_at(c);
     for (int i = 0; i < n; ++i)
-      for (int j = 0; i + j < n; ++j)
-        worst = std::max(worst, distance(a + (i + 1.0 / 3) / n * (b - a) + (j + 1.0 / 3) / n * (c - a)));
+      for (int j = 0; i + j < n; ++j) look_at(a + (i + 1.0 / 3) / n * (b - a) + (j + 1.0 / 3) / n * (c - a));
   }
   return worst;
 }

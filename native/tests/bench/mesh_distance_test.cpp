@@ -35,9 +35,17 @@ TEST(MeshDistance, IsThatToTheNearestTriangle) {
                       b * (mesh.vertices[t.z] - mesh.vertices[t.x]);
       points.push_back(on + (n % 4 ? random.power_of_ten(-9, 0.5) : 0.0) * random.direction());
     }
-    const std::vector<double> found = bench::MeshDistance(mesh)(points);
-    for (std::size_t n = 0; n < points.size(); ++n)
-      EXPECT_NEAR(found[n], by_every_triangle(points[n], mesh), 1e-12) << n << ", " << thin;
+    const bench::MeshDistance distance(mesh);
+    const std::vector<double> found = distance(points);
+    double worst = 0, expected = 0;
+    int near = 0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const double every = by_every_triangle(points[n], mesh);
+      EXPECT_NEAR(found[n], every, 1e-12) << n << ", " << thin;
+      EXPECT_NEAR(distance(points[n], 0, &near), every, 1e-12) << n << ", " << thin;
+      worst = std::max(worst, distance(points[n], worst, &near)), expected = std::max(expected, every);
+      EXPECT_NEAR(worst, expected, 1e-12) << n << ", " << thin;
+    }
   }
 }
 
