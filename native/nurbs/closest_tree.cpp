@@ -40,7 +40,7 @@ struct LeafMaker {
   std::size_t span;
   Degrees degrees;
   const TrimmedSpan& trims;
-  std::vector<BezierLeaf>& leaves;
+  std::vector<BezierLeaf>&leaves, &borders;
   std::vector<Vec4>& nets;
 
   void divide(const Vec4* net, const Vec2& lower, const Vec2& upper, int halvings, const TrimRegion::Edges& above) {
@@ -69,6 +69,7 @@ struct LeafMaker {
     }
     std::vector<Trapezoid> pieces;
     trims.append_pieces(edges, lower, upper, pieces);
+    for (const std::uint32_t edge : edges) add_border(net, lower, upper, edge);
     const Vec2 size = upper - lower;
     for (const Trapezoid& piece : pieces) {
       const Degrees made = degrees_over(degrees, piece);
@@ -79,85 +80,125 @@ struct LeafMaker {
                          {u(piece.left[0]), u(piece.left[1])},
                          {u(piece.right[0]), u(piece.right[1])}},
                         made,
-                        nets.size()});
+                        nets.size(),
+                        true});
       nets.resize(nets.size() + made.size());
       trimmed_net(net, degrees, piece, nets.data() + nets.size() - made.size());
     }
+  }
+
+  void add_border(const Vec4* net, const Vec2& lower, const Vec2& upper, std::uint32_t edge) {
+    Vec2 a, b;
+    if (!trims.clipped(edge, lower, upper, a, b)) return;
+    const Vec2 size = upper - lower, from = lower + a * size, to = lower + b * size;
+    const Degrees made{0, degrees.u + degrees.v};
+    borders.push_back({span, {from.y, to.y, {from.x, to.x}, {from.x, to.x}}, made, nets.size()});
+    nets.resize(nets.size() + made.size());
+    border_net(net, degrees, a, b, nets.data() + nets.size() - made.size());
   }
 };
 
 }  // namespace
 
-ClosestTree::ClosestTree(const std::vector<BezierSpan>& spans, const std::vector<TrimRegion>& regions) {
-  for (std::size_t i = 0; i < spans.size(); ++i) {
-    const TrimmedSpan trims(spans[i], regions[spans[i].patch]);
-    LeafMaker{i, spans[i].degrees, trims, leaves_, nets_}.divide(spans[i].net.data(), Vec2(0), Vec2(1),
-                                                                 kMaxHalvings + kMaxCuts, trims.all());
-  }
-  if (leaves_.empty())
-    throw std::invalid_argument("trims: nothing is inside of the borders; leave trims out for the whole domain");
-  std::vector<Box3> boxes;
+void BoxTree::build(const std::vector<Box3>& items, std::size_t first) {
+  if (first == items.size()) return;
   std::vector<Vec3> centres;
-  for (const BezierLeaf& leaf : leaves_) {
-    boxes.push_back(box_of(nets_.data() + leaf.net, leaf.degrees));
-    centres.push_back(0.5 * boxes.back().lower + 0.5 * boxes.back().upper);
-  }
-  order_.resize(leaves_.size());
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  while ((std::size_t{2} << levels_) <= leaves_.size()) ++levels_;
-  geom::sort_by_medians(order_, levels_, centres);
-  boxes_ = geom::boxes_of_tree(levels_, [&](std::size_t k) {
+  for (const Box3& box : items) centres.push_back(0.5 * box.lower + 0.5 * box.upper);
+  order.resize(items.size() - first);
+  std::iota(order.begin(), order.end(), first);
+  while ((std::size_t{2} << levels) <= order.size()) ++levels;
+  geom::sort_by_medians(order, levels, centres);
+  boxes = geom::boxes_of_tree(levels, [&](std::size_t k) {
     Box3 box;
-    for (std::size_t i = geom::first_item(order_.size(), levels_, k);
-         i < geom::first_item(order_.size(), levels_, k + 1); ++i)
-      box.add(boxes[order_[i]]);
+    for (std::size_t i = geom::first_item(order.size(), levels, k); i < geom::first_item(order.size(), levels, k + 1);
+         ++i)
+      box.add(items[order[i]]);
     return box;
   });
 }
 
-ClosestSearch::ClosestSearch(const ClosestTree& tree) : tree_(&tree) {}
+ClosestTree::ClosestTree(const std::vector<BezierSpan>& spans, const std::vector<TrimRegion>& regions) {
+  std::vector<BezierLeaf> borders;
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const TrimmedSpan trims(spans[i], regions[spans[i].patch]);
+    LeafMaker{i, spans[i].degrees, trims, leaves_, borders, nets_}.divide(spans[i].net.data(), Vec2(0), Vec2(1),
+                                                                          kMaxHalvings + kMaxCuts, trims.all());
+  }
+  if (leaves_.empty())
+    throw std::invalid_argument("trims: nothing is inside of the borders; leave trims out for the whole domain");
+  const std::size_t faces = leaves_.size();
+  std::vector<Box3> boxes;
+  leaves_.insert(leaves_.end(), borders.begin(), borders.end());
+  for (const BezierLeaf& leaf : leaves_) boxes.push_back(box_of(nets_.data() + leaf.net, leaf.degrees));
+  borders_.build(boxes, faces);
+  boxes.resize(faces);
+  faces_.build(boxes, 0);
+}
 
 LeafFoot ClosestSearch::operator()(const Vec3& p, double scale) {
   p_ = p;
   best_ = {};
   best_.distance = std::numeric_limits<double>::infinity();
   slack_ = std::max(kProven, kRounding * std::max(scale, glm::length(p)));
+  later_.clear();
+  descend(tree_.faces_, [&](std::size_t index) {
+    const BezierLeaf& leaf = tree_.leaf(index);
+    if (!leaf.at_border) return search_leaf(index);
+    later_.push_back(index);
+    set_net(leaf);
+    Vec2 at(0.5);
+    improve(nets_.data(), leaf.degrees, {Vec2(0), Vec2(1)}, index, at);
+  });
+  if (!later_.empty()) descend(tree_.borders_, [&](std::size_t index) { search_leaf(index); });
+  for (const std::size_t index : later_)
+    if (goal() > 0) search_leaf(index);
+  best_.point += p;
+  return best_;
+}
+
+/// Calls leaf(i) for the items of leaves whose box is nearer than the goal, the nearer child first.
+template <class Leaf>
+void ClosestSearch::descend(const BoxTree& tree, const Leaf& leaf) {
+  if (tree.boxes.empty()) return;
   struct Node {
     double squared;
     std::size_t index;
   };
   std::array<Node, 2 * 64> stack;
   std::size_t top = 0;
-  stack[top++] = {squared_distance(p, tree_->boxes_[0]), 0};
-  const std::size_t first_leaf = (std::size_t{1} << tree_->levels_) - 1;
+  stack[top++] = {squared_distance(p_, tree.boxes[0]), 0};
+  const std::size_t first_leaf = (std::size_t{1} << tree.levels) - 1;
   while (top > 0) {
     const Node node = stack[--top];
     if (!(goal() > 0)) break;
     if (node.squared >= goal() * goal()) continue;
     if (node.index < first_leaf) {
-      Node near{squared_distance(p, tree_->boxes_[2 * node.index + 1]), 2 * node.index + 1};
-      Node far{squared_distance(p, tree_->boxes_[2 * node.index + 2]), 2 * node.index + 2};
+      Node near{squared_distance(p_, tree.boxes[2 * node.index + 1]), 2 * node.index + 1};
+      Node far{squared_distance(p_, tree.boxes[2 * node.index + 2]), 2 * node.index + 2};
       if (far.squared < near.squared) std::swap(near, far);
       stack[top++] = far, stack[top++] = near;
       continue;
     }
-    const std::size_t k = node.index - first_leaf, n = tree_->order_.size();
-    for (std::size_t i = geom::first_item(n, tree_->levels_, k); i < geom::first_item(n, tree_->levels_, k + 1); ++i)
-      search_leaf(tree_->order_[i]);
+    const std::size_t k = node.index - first_leaf, n = tree.order.size();
+    for (std::size_t i = geom::first_item(n, tree.levels, k); i < geom::first_item(n, tree.levels, k + 1); ++i)
+      leaf(tree.order[i]);
   }
-  best_.point += p;
-  return best_;
+}
+
+/// The leaf's net, relative to the query point, at the bottom of the stack.
+void ClosestSearch::set_net(const BezierLeaf& leaf) {
+  nets_.resize(std::max(nets_.size(), 3 * leaf.degrees.size()));
+  for (std::size_t k = 0; k < leaf.degrees.size(); ++k) {
+    const Vec4& h = tree_.nets_[leaf.net + k];
+    nets_[k] = Vec4(Vec3(h) - h.w * p_, h.w);
+  }
 }
 
 void ClosestSearch::search_leaf(std::size_t index) {
-  const BezierLeaf& leaf = tree_->leaf(index);
+  const BezierLeaf& leaf = tree_.leaf(index);
   const Degrees& degrees = leaf.degrees;
   const std::size_t size = degrees.size();
-  nets_.resize(std::max(nets_.size(), 3 * size));
-  for (std::size_t k = 0; k < size; ++k) {
-    const Vec4& h = tree_->nets_[leaf.net + k];
-    nets_[k] = Vec4(Vec3(h) - h.w * p_, h.w);
-  }
+  set_net(leaf);
   cells_.assign(1, {Vec2(0), Vec2(1)});
   std::array<Vec4, kMaxNet> net;
   for (int round = 0; !cells_.empty() && goal() > 0; ++round) {
@@ -171,10 +212,12 @@ void ClosestSearch::search_leaf(std::size_t index) {
     if (!(goal() > 0)) return;
     set_excess(net.data(), degrees);
     if (excess_.positive() || excluded_by_convexity(net.data(), degrees, at)) continue;
+    const Vec2 bend = excess_.bend();
+    if (leaf.at_border && excluded_by_rectangle(leaf, index, cell)) continue;
+    if (!(goal() > 0)) return;
     // No part of a net that is as small as the slack is nearer by more than that.
     if (glm::length(box_of(net.data(), degrees).size()) <= slack_) continue;
-    const Vec2 bend = excess_.bend();
-    const bool along_u = bend.x >= bend.y;
+    const bool along_u = degrees.u > 0 && bend.x >= bend.y;
     const Vec2 middle = 0.5 * (cell.lower + cell.upper);
     if (along_u ? middle.x == cell.lower.x || middle.x == cell.upper.x
                 : middle.y == cell.lower.y || middle.y == cell.upper.y)
@@ -213,11 +256,37 @@ bool ClosestSearch::excluded_by_convexity(const Vec4* net, const Degrees& degree
   return excess_.convex() && Excess::tangent_is_positive(jet_of(net, degrees, at), at, form());
 }
 
+/// Whether the rectangle of parameters around a cell has no point within the borders that is nearer than the goal. No
+/// border is.
+bool ClosestSearch::excluded_by_rectangle(const BezierLeaf& leaf, std::size_t index, const Cell& cell) {
+  const BezierSpan& span = spans_[leaf.span];
+  const Vec2 corners[] = {leaf.domain.at(cell.lower), leaf.domain.at({cell.upper.x, cell.lower.y}),
+                          leaf.domain.at({cell.lower.x, cell.upper.y}), leaf.domain.at(cell.upper)};
+  Vec2 lower = corners[0], upper = corners[0];
+  for (const Vec2& c : corners) lower = glm::min(lower, c), upper = glm::max(upper, c);
+  const Trapezoid rectangle{lower.y, upper.y, {lower.x, lower.x}, {upper.x, upper.x}};
+  std::array<Vec4, kMaxNet> net;
+  trimmed_net(span.net.data(), span.degrees, rectangle, net.data());
+  for (std::size_t k = 0; k < span.degrees.size(); ++k) net[k] -= Vec4(net[k].w * p_, 0);
+  set_excess(net.data(), span.degrees);
+  if (excess_.positive()) return true;
+  if (!excess_.convex()) return false;
+  Vec2 at(0.5);
+  const double distance = std::sqrt(walk_to_foot(net.data(), span.degrees, at));
+  if (distance < goal()) {
+    const Vec2 place = rectangle.at(at);
+    if (!regions_[span.patch].holds(span.to_patch(place))) return true;
+    best_ = {affine(point_of(net.data(), span.degrees, at)), distance, index, place};
+  }
+  return !(goal() > 0) || excluded_by_convexity(net.data(), span.degrees, at);
+}
+
 /// Sets `at` to the nearest point of the net that Newton's method finds, and keeps it if it is the nearest so far.
 void ClosestSearch::improve(const Vec4* net, const Degrees& degrees, const Cell& cell, std::size_t leaf, Vec2& at) {
   const double distance = std::sqrt(walk_to_foot(net, degrees, at));
   if (!(distance < best_.distance)) return;
-  best_ = {affine(point_of(net, degrees, at)), distance, leaf, cell.lower + at * (cell.upper - cell.lower)};
+  best_ = {affine(point_of(net, degrees, at)), distance, leaf,
+           tree_.leaf(leaf).domain.at(cell.lower + at * (cell.upper - cell.lower))};
 }
 
 }  // namespace riffler::nurbs

@@ -5,6 +5,10 @@
 // tangent plane in any point bounds it as well, which ends the search next to the nearest point. Otherwise the net is
 // halved, across the direction in which G bends more. Nets that are equally near everywhere (a ball's around its
 // centre) have a constant G, and end the search at once.
+//
+// Borders of trimmed patches are searched as curves, before the trapezoids next to them. If then G is convex in a
+// rectangle of parameters and negative in a point of it that is outside of the borders, the part within them has no
+// point with a negative G: the line from one to the other would cross a border in such a point.
 #pragma once
 
 #include <cstddef>
@@ -16,15 +20,26 @@
 
 namespace riffler::nurbs {
 
-/// A part of a span that bends little.
+/// A part of a span that bends little, or a straight piece of a border: then u has no extent, and degree 0.
 struct BezierLeaf {
   std::size_t span = 0;
-  Trapezoid domain;  // in the span's unit square
+  Trapezoid domain;      // in the span's unit square
   Degrees degrees;
-  std::size_t net = 0;  // where its control points begin
+  std::size_t net = 0;   // where its control points begin
+  bool at_border = false;  // a trapezoid next to borders
 };
 
-/// A binary tree of boxes over the leaves of all spans.
+/// A binary tree of boxes over items.
+struct BoxTree {
+  std::vector<std::size_t> order;  // of the items
+  std::size_t levels = 0;
+  std::vector<Box3> boxes;  // of the nodes: node i has the children 2 i + 1 and 2 i + 2
+
+  /// Over the items from `first` on.
+  void build(const std::vector<Box3>& items, std::size_t first);
+};
+
+/// Trees over the leaves of all spans, and over the pieces of borders.
 class ClosestTree {
  public:
   ClosestTree() = default;
@@ -36,14 +51,12 @@ class ClosestTree {
  private:
   friend class ClosestSearch;
 
-  std::vector<BezierLeaf> leaves_;
+  std::vector<BezierLeaf> leaves_;  // of faces, then of borders
   std::vector<Vec4> nets_;
-  std::vector<std::size_t> order_;  // of the leaves in the tree
-  std::size_t levels_ = 0;
-  std::vector<Box3> boxes_;  // of the nodes: node i has the children 2 i + 1 and 2 i + 2
+  BoxTree faces_, borders_;
 };
 
-/// The nearest point, with its parameters in the leaf's unit square.
+/// The nearest point, with its parameters in the unit square of the leaf's span.
 struct LeafFoot {
   Vec3 point{0};
   double distance = 0;
@@ -54,7 +67,9 @@ struct LeafFoot {
 /// One thread's search with its memory.
 class ClosestSearch {
  public:
-  explicit ClosestSearch(const ClosestTree& tree);
+  /// Keeps references to all three; `spans` and `regions` are those of the tree.
+  ClosestSearch(const ClosestTree& tree, const std::vector<BezierSpan>& spans, const std::vector<TrimRegion>& regions)
+      : tree_(tree), spans_(spans), regions_(regions) {}
   /// `scale`: the surface's largest coordinate, mm.
   LeafFoot operator()(const Vec3& p, double scale);
 
@@ -71,7 +86,11 @@ class ClosestSearch {
     }
   };
 
+  template <class Leaf>
+  void descend(const BoxTree& tree, const Leaf& leaf);
+  void set_net(const BezierLeaf& leaf);
   void search_leaf(std::size_t leaf);
+  bool excluded_by_rectangle(const BezierLeaf& leaf, std::size_t index, const Cell& cell);
   bool excluded(const Vec4* net, const Degrees& degrees);
   Form form() const;
   void set_excess(const Vec4* net, const Degrees& degrees);
@@ -80,7 +99,10 @@ class ClosestSearch {
   /// Distance (mm) that the rest of the surface must be proven to have at least.
   double goal() const { return best_.distance - slack_; }
 
-  const ClosestTree* tree_;
+  const ClosestTree& tree_;
+  const std::vector<BezierSpan>& spans_;
+  const std::vector<TrimRegion>& regions_;
+  std::vector<std::size_t> later_;  // leaves at borders
   std::vector<Vec4> nets_;
   std::vector<Cell> cells_;
   Excess excess_;

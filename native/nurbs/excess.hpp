@@ -69,6 +69,8 @@ inline bool Excess::convex() const {
       if (i < degrees.u && j < degrees.v)
         uv = std::max(uv, std::abs(at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)));
     }
+  if (degrees.u < 2) uu = 0;
+  if (degrees.v < 2) vv = 0;
   uu *= degrees.u * (degrees.u - 1), vv *= degrees.v * (degrees.v - 1), uv *= degrees.u * degrees.v;
   return uu >= 0 && vv >= 0 && uu * vv >= uv * uv;
 }

@@ -134,15 +134,13 @@ std::vector<Foot> Surface::closest(std::span<const Vec3> points, const Progress&
   base::parallel_for(
       points.size(), 16,
       [&](std::size_t begin, std::size_t end) {
-        ClosestSearch search(core_->tree);
+        ClosestSearch search(core_->tree, core_->spans, core_->regions);
         for (std::size_t i = begin; i < end; ++i) {
           const Vec3 p = points[i] - core_->origin;
           const LeafFoot foot = search(p, core_->scale);
-          const BezierLeaf& leaf = core_->tree.leaf(foot.leaf);
-          const BezierSpan& span = core_->spans[leaf.span];
-          const Vec2 at = leaf.domain.at(foot.uv);
-          found[i] = {core_->origin + foot.point, normal_of(span.net.data(), span.degrees, at), foot.distance,
-                      span.patch, span.to_patch(at)};
+          const BezierSpan& span = core_->spans[core_->tree.leaf(foot.leaf).span];
+          found[i] = {core_->origin + foot.point, normal_of(span.net.data(), span.degrees, foot.uv), foot.distance,
+                      span.patch, span.to_patch(foot.uv)};
         }
       },
       progress);

@@ -62,6 +62,20 @@ void trimmed_net(const Vec4* net, const Degrees& degrees, const Trapezoid& piece
         }
 }
 
+void border_net(const Vec4* net, const Degrees& degrees, const Vec2& a, const Vec2& b, Vec4* out) {
+  const int p = degrees.u, q = degrees.v;
+  std::fill(out, out + p + q + 1, Vec4(0));
+  std::array<Vec4, kMaxOrder> column;
+  for (int j = 0; j <= q; ++j) {
+    for (int i = 0; i <= p; ++i)
+      column[static_cast<std::size_t>(i)] =
+          blossom(net + degrees.at(i, 0), 1, q, {{a.y, b.y, 0, 0}, {q - j, j, 0, 0}});
+    for (int i = 0; i <= p; ++i)
+      out[i + j] += kBinomials(p, i) * kBinomials(q, j) / kBinomials(p + q, i + j) *
+                    blossom(column.data(), 1, p, {{a.x, b.x, 0, 0}, {p - i, i, 0, 0}});
+  }
+}
+
 Vec2 side_lengths(const Vec4* net, const Degrees& degrees) {
   Vec2 most(0);
   for (int i = 0; i <= degrees.u; ++i) {
