@@ -21,8 +21,10 @@ constexpr double kFlat = 0.05;    // distance of a leaf from its plane, relative
 constexpr int kMaxHalvings = 10;  // of a span, until leaves bend little
 constexpr int kMaxCuts = 24;      // more halvings of it, until few edges of borders cross a leaf
 constexpr std::size_t kMaxEdges = 8;
-constexpr double kProven = 1e-9;     // mm
-constexpr double kRounding = 1e-13;  // relative
+constexpr double kNarrow = 1.0 / 64;  // of a rectangle of parameters: width relative to its length
+constexpr double kSmall = 1e-6;       // and to the span
+constexpr double kProven = 1e-9;      // mm
+constexpr double kRounding = 1e-13;   // relative
 
 Box3 box_of(const Vec4* net, const Degrees& degrees) {
   Box3 box;
@@ -264,6 +266,9 @@ bool ClosestSearch::excluded_by_rectangle(const BezierLeaf& leaf, std::size_t in
                           leaf.domain.at({cell.lower.x, cell.upper.y}), leaf.domain.at(cell.upper)};
   Vec2 lower = corners[0], upper = corners[0];
   for (const Vec2& c : corners) lower = glm::min(lower, c), upper = glm::max(upper, c);
+  // Derivatives across a narrow rectangle would be rounding only.
+  const Vec2 size = upper - lower, wider = glm::max(size, glm::max(kNarrow * Vec2(size.y, size.x), Vec2(kSmall)));
+  lower = glm::max(lower - 0.5 * (wider - size), 0.0), upper = glm::min(upper + 0.5 * (wider - size), 1.0);
   const Trapezoid rectangle{lower.y, upper.y, {lower.x, lower.x}, {upper.x, upper.x}};
   std::array<Vec4, kMaxNet> net;
   trimmed_net(span.net.data(), span.degrees, rectangle, net.data());

@@ -23,9 +23,9 @@ namespace riffler::nurbs {
 /// A part of a span that bends little, or a straight piece of a border: then u has no extent, and degree 0.
 struct BezierLeaf {
   std::size_t span = 0;
-  Trapezoid domain;      // in the span's unit square
+  Trapezoid domain;  // in the span's unit square
   Degrees degrees;
-  std::size_t net = 0;   // where its control points begin
+  std::size_t net = 0;     // where its control points begin
   bool at_border = false;  // a trapezoid next to borders
 };
 

@@ -108,9 +108,7 @@ bool TrimRegion::clipped(std::uint32_t edge, const Vec2& lower, const Vec2& uppe
     from = std::max(from, std::min(t, s)), to = std::min(to, std::max(t, s));
   }
   if (from > to) return false;
-  const auto at = [&](double t) {
-    return glm::clamp((e.a + t * way - lower) / (upper - lower), 0.0, 1.0);
-  };
+  const auto at = [&](double t) { return glm::clamp((e.a + t * way - lower) / (upper - lower), 0.0, 1.0); };
   a = at(from), b = at(to);
   return true;
 }

@@ -68,8 +68,7 @@ void border_net(const Vec4* net, const Degrees& degrees, const Vec2& a, const Ve
   std::array<Vec4, kMaxOrder> column;
   for (int j = 0; j <= q; ++j) {
     for (int i = 0; i <= p; ++i)
-      column[static_cast<std::size_t>(i)] =
-          blossom(net + degrees.at(i, 0), 1, q, {{a.y, b.y, 0, 0}, {q - j, j, 0, 0}});
+      column[static_cast<std::size_t>(i)] = blossom(net + degrees.at(i, 0), 1, q, {{a.y, b.y, 0, 0}, {q - j, j, 0, 0}});
     for (int i = 0; i <= p; ++i)
       out[i + j] += kBinomials(p, i) * kBinomials(q, j) / kBinomials(p + q, i + j) *
                     blossom(column.data(), 1, p, {{a.x, b.x, 0, 0}, {p - i, i, 0, 0}});

@@ -112,6 +112,33 @@ TEST(TrimmedNet, IsTheSameSurface) {
   }
 }
 
+TEST(TrimmedSurface, HasTheNearestPointOfBordersWithNoise) {
+  // A roller of radius 6 around z, whose upper border differs from z = 9 by 1e-12 mm.
+  Patch patch = shapes::turned(shapes::line({6, -5}, {6, 9}), 4);
+  const Vec2 lower = patch.lower(), upper = patch.upper();
+  const Surface whole({patch});
+  const double first = whole.evaluate(std::vector{lower})[0].point.z;
+  const double along = whole.evaluate(std::vector{Vec2(upper.x, lower.y)})[0].point.z == first ? 1 : 0;
+  Loop loop;
+  const auto at = [&](double around, double up) {
+    return lower + (upper - lower) * (along > 0 ? Vec2(around, up) : Vec2(up, around));
+  };
+  for (int k = 0; k <= 40; ++k) loop.push_back(at(k / 40.0, 1 - 1e-13 * (k % 3)));
+  loop.push_back(at(1, 0)), loop.push_back(at(0, 0));
+  patch.trims = {loop};
+  const Surface surface({patch});
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int k = 0; k < 100; ++k) {
+    const double a = 2 * kPi * share(random), off = 0.002 * share(random), up = 0.002 * share(random) - 0.001;
+    for (const double end : {-5.0, 9.0}) {
+      const Vec3 p((6 + off) * std::cos(a), (6 + off) * std::sin(a), end + up);
+      const double beyond = std::max(0.0, end > 0 ? up : -up);
+      EXPECT_NEAR(surface.closest(std::vector{p})[0].distance, std::hypot(off, beyond), 2e-9) << a << " " << end;
+    }
+  }
+}
+
 TEST(TrimmedSurface, HasTheNearestPointWithinItsBorders) {
   Patch patch = plane(20);
   const Loop outer = circle({0.5, 0.5}, 0.4, 90), hole = circle({0.5, 0.5}, 0.2, 45);
