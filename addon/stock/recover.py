@@ -122,8 +122,8 @@ def _rest(folder, strokes, done, content):
     out.set_stock(v.lower, v.upper, v.pitch, v.directions, snapshot=journal.STOCK, mask=mask)
     for number, tool in strokes.tools.items():
         out.add_tool(number, tool)
-    for s in strokes.strokes[done:]:
-        out.add_stroke(s.tool, s.poses, tolerance=s.tolerance, name=s.name, mode=s.mode, strength=s.strength)
+    for stroke in strokes.strokes[done:]:
+        journal.add_again(out, stroke)
     return out
 
 

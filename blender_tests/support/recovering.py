@@ -1,10 +1,13 @@
 """Runs in a Blender of its own that will be killed: a sculpt carved in strokes, reported line by line.
 
 The job's `what`: "stroke", one that never ends; "rest", strokes and then nothing; "end", the add-on is disabled after
-them. `path`: a file to save before the first stroke, or ""; `stroke`: mode of the last one. Each line is printed when
-the carve that it reports has returned.
+them; "shapes", strokes of hand tools and brushes with falloff by the operator, and one that never ends. `path`: a file
+to save before the first stroke, or ""; `stroke`: mode of the last one. Each line is printed when the carve that it
+reports has returned.
 """
 
+import hashlib
+import json
 import math
 import os
 import sys
@@ -24,6 +27,11 @@ import riffler
 BALL = riffler.Tool.ball(6, 30)
 SIZE = (60, 60, 20)
 ROWS = 5  # rows per carve
+TOP = 14.0  # mm; of the stock of "shapes"
+TOOL = json.dumps(BALL.to_dict())
+PIECES = 6  # carves of the last stroke of "shapes"
+PIXEL, PIXELS = 0.1, (600, 600)  # mm; of the view from above, in which the operator's strokes are made
+BRUSHES = ("CLAY", "TWIST", "GRAB", "CREASE", "SNAKE_HOOK", "SCRAPE")  # of the strokes of "shapes", after hand tools
 MODES = ("remove", "add", "mask", "remove")  # of the strokes before the last
 
 
@@ -76,6 +84,58 @@ def last_stroke(run, forever, mode):
     run.finish_stroke(bpy.context, "last")
 
 
+def digest(content):
+    """Of a volume and a mask, to the byte."""
+    mask = b"" if content.mask is None else content.mask.to_bytes()
+    return hashlib.sha256(content.volume.to_bytes() + mask).hexdigest()
+
+
+def shape(mode, *places, **more):
+    """A stroke by the operator, through places (mm) seen from above."""
+    matrix = np.diag([2 / (PIXELS[0] * PIXEL), 2 / (PIXELS[1] * PIXEL), -0.01, 1.0])
+    matrix[:3, 3] = -(matrix[:3, :3] @ np.array([30.0, 30, 0]))
+    view = {"matrix": matrix.ravel().tolist(), "size": list(PIXELS)}
+    text = json.dumps({"view": view, "rows": [[x / PIXEL, y / PIXEL] for x, y in places]})
+    made = bpy.ops.riffler.stroke("EXEC_DEFAULT", True, stroke=text, mode=mode, **more)
+    assert made == {"FINISHED"}, mode
+
+
+def piece(mode, k):
+    """Piece k of a stroke with the tool of `mode`: its poses."""
+    x = [30 + 1.5 * (k + j / ROWS) for j in range(ROWS + 1)]
+    if mode == "hand":  # a blade that leans back and rises
+        lean = math.sqrt(0.5)
+        return np.array([[at, 40, TOP - 0.6 + 0.05 * k, -lean, 0, lean, lean, 0, lean] for at in x])
+    if mode == "grab":  # from the first place to the current one
+        return np.array([[30.0, 45, TOP, 0, 0, 1], [x[-1], 45, TOP, 0, 0, 1]])
+    return np.array([[at, 42, TOP, 0, 0, 1] for at in x])
+
+
+def shapes(run, mode):
+    """Hand tools with a mirrored copy and brushes, half of them beside a mask, and a stroke that stays unfinished."""
+    settings = bpy.context.scene.riffler.sculpt
+    settings.depth, settings.strength, settings.falloff, settings.axis, settings.string = 0.6, 0.5, "ROOT", "NORMAL", 0
+    settings.mirror, settings.radial = {"Y"}, 1
+    run.begin_stroke()
+    run.carve(riffler.Tool.flat(100, 30), np.array([[30.0, 30, TOP, 0, 0, 1], [31, 30, TOP, 0, 0, 1]]))
+    run.finish_stroke(bpy.context, "room above")
+    for preset, y in (("Gouge No. 7, 10 mm", 8), ("Skew Chisel 10 mm, 20°", 20)):
+        bpy.ops.riffler.hand_tool_preset(name=preset)
+        shape("HAND", (8, y), (24, y + 4), (50, y))
+    settings.mirror = set()
+    for k, brush in enumerate(BRUSHES):
+        if k == len(BRUSHES) // 2:
+            run.begin_stroke()
+            run.carve(BALL, lane(3) - [0, 0, 18 - TOP, 0, 0, 0], mode="mask")
+            run.finish_stroke(bpy.context, "mask")
+        shape(brush, (12 + 3 * k, 18), (20 + 3 * k, 22), (30 + 3 * k, 21), tool=TOOL)
+    tool = riffler.Tool.gouge(6, 4, math.radians(30), 40) if mode == "hand" else BALL
+    run.begin_stroke()
+    for k in range(PIECES):
+        run.carve(tool, piece(mode, k), mode=mode, new=k == 0)
+        report.say(rows=k + 1, digest=digest(run))
+
+
 def main():
     job = common.JOB
     common.part("sculpt.persistence").folder = lambda: Path(job["journals"])
@@ -86,6 +146,9 @@ def main():
     run = common.part("sculpt.live_registry").begin(bpy.context, bpy.data.objects[name])
     if not job["small"]:
         run.persistence._packing.nbytes = 1e9
+    if job["what"] == "shapes":
+        shapes(run, job["stroke"])
+        time.sleep(1000)
     for k, mode in enumerate(MODES):
         run.begin_stroke()
         run.carve(BALL, lane(k), mode=mode)

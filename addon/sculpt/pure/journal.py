@@ -234,12 +234,18 @@ def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
     out.set_stock(stock.lower, stock.upper, stock.pitch, stock.directions, snapshot=names["stock"], mask=names["mask"])
     for number, tool in journal.tools.items():
         out.add_tool(number, tool)
-    for s in journal.strokes:
-        out.add_stroke(
-            s.tool, s.poses, times=s.times, tolerance=s.tolerance, name=s.name, forces=s.forces, removed=s.removed,
-            mode=s.mode, strength=s.strength, amount=s.amount, falloff=s.falloff,
-        )  # fmt: skip
+    for stroke in journal.strokes:
+        add_again(out, stroke)
     out.save(path)
+
+
+def add_again(out: riffler.Journal, stroke) -> None:
+    """Adds a stroke of another journal, with everything it has."""
+    s = stroke
+    out.add_stroke(
+        s.tool, s.poses, times=s.times, tolerance=s.tolerance, name=s.name, forces=s.forces, removed=s.removed,
+        mode=s.mode, strength=s.strength, amount=s.amount, falloff=s.falloff,
+    )  # fmt: skip
 
 
 # ---------------------------------------------------------------------- after a crash

@@ -209,6 +209,45 @@ def test_killed_in_mid_stroke_of_the_other_modes_and_recovered():
             bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_mode.blend"))
 
 
+def shapes_killed(mode, path=""):
+    """A Blender killed within a stroke of a hand tool or a brush with falloff, after others of both. Returns the
+    digest of what it had."""
+    with another_blender("shapes", path, mode=mode) as (child, messages):
+        said = next(message for message in messages if message.get("rows") == recovering.PIECES)
+        child.send_signal(signal.SIGKILL)
+        child.wait(30)
+    return said["digest"]
+
+
+@common.core_bound
+def test_killed_within_a_stroke_of_a_hand_tool_or_a_brush_and_recovered_to_the_byte():
+    for mode in ("hand", "grab"):
+        with fresh():
+            had = shapes_killed(mode)
+            bpy.ops.wm.read_homefile(use_empty=False)
+            common.scale(1)
+            keeping().crashed(look=True)
+            assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
+            made = common.content(bpy.data.objects["Stock"])
+            assert recovering.digest(made) == had, mode
+            assert made.shaped and len(made.cuts) == 1, "only the first cut is one that a machine can make"
+            matches_its_volume("Stock")
+            bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_shapes.blend"))
+            bpy.ops.wm.open_mainfile(filepath=common.out("recovered_shapes.blend"))
+            assert recovering.digest(common.content(bpy.data.objects["Stock"])) == had, mode
+
+
+@common.core_bound
+def test_strokes_of_brushes_and_hand_tools_continue_from_the_file_without_the_journal_s_stock():
+    path = common.out("no_stock_shapes.blend")
+    with fresh():
+        had = shapes_killed("twist", path)
+        (keeping().crashed(look=True)[0].folder / "stock.rvol").unlink()
+        bpy.ops.wm.open_mainfile(filepath=path)
+        assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
+        assert recovering.digest(common.content(bpy.data.objects["Stock"])) == had
+
+
 def test_a_journal_without_its_stock_continues_from_the_file():
     path = common.out("no_stock.blend")
     with fresh():
