@@ -85,7 +85,7 @@ def last_stroke(run, forever, mode):
 
 
 def digest(content):
-    """Of a volume and a mask, to the byte."""
+    """Hash of the bytes of a volume and its mask."""
     mask = b"" if content.mask is None else content.mask.to_bytes()
     return hashlib.sha256(content.volume.to_bytes() + mask).hexdigest()
 
@@ -112,7 +112,7 @@ def piece(mode, k):
 
 
 def shapes(run, mode):
-    """Hand tools with a mirrored copy and brushes, half of them beside a mask, and a stroke that stays unfinished."""
+    """Hand tools with a mirrored copy and brushes, half of them near a mask, and a stroke that stays unfinished."""
     settings = bpy.context.scene.riffler.sculpt
     settings.depth, settings.strength, settings.falloff, settings.axis, settings.string = 0.6, 0.5, "ROOT", "NORMAL", 0
     settings.mirror, settings.radial = {"Y"}, 1
