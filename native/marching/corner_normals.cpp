@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/sort_unique.hpp"
 #include "geom/math.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/vertex_star.hpp"
@@ -20,31 +19,22 @@ struct Wedge {
   double angle;
 };
 
-/// The bricks with triangles adjacent to `bricks`, without these.
-std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> bricks) {
-  std::vector<std::size_t> out, own(bricks.begin(), bricks.end());
-  std::sort(own.begin(), own.end());
-  for (const std::size_t n : bricks) {
-    const Vec3i at = all.place(n);
-    for (int i = at.x - 1; i <= at.x + 1; ++i)
-      for (int j = at.y - 1; j <= at.y + 1; ++j)
-        for (int k = at.z - 1; k <= at.z + 1; ++k)
-          if (const ActiveBrick* const active = all.active(i, j, k); active && active->edges() > 0)
-            if (const std::size_t m = all.index(i, j, k); !std::binary_search(own.begin(), own.end(), m))
-              out.push_back(m);
-  }
-  base::sort_unique(out);
-  return out;
-}
-
-/// The bricks of some vertices of the mesh: those of a patch and their neighbours.
+/// Finds the bricks of vertices in a patch's triangles: its own bricks and all around them. A brick may have vertices
+/// and no triangles, if the crossed edges of its cells begin in the next bricks.
 class Owners {
  public:
   Owners(const MeshState& state, std::span<const std::size_t> bricks) {
-    for (const std::size_t n : bricks) bricks_.push_back(state.bricks.active(n));
-    for (const std::size_t n : beside(state.bricks, bricks)) bricks_.push_back(state.bricks.active(n));
+    for (const std::size_t n : bricks) {
+      const Vec3i at = state.bricks.place(n);
+      for (int i = at.x - 1; i <= at.x + 1; ++i)
+        for (int j = at.y - 1; j <= at.y + 1; ++j)
+          for (int k = at.z - 1; k <= at.z + 1; ++k)
+            if (const ActiveBrick* const active = state.bricks.active(i, j, k); active && active->vertices() > 0)
+              bricks_.push_back(active);
+    }
     std::sort(bricks_.begin(), bricks_.end(),
               [](const ActiveBrick* a, const ActiveBrick* b) { return a->first_vertex < b->first_vertex; });
+    bricks_.erase(std::unique(bricks_.begin(), bricks_.end()), bricks_.end());
   }
   const ActiveBrick& of(std::int32_t vertex) const {
     const auto after =

@@ -138,5 +138,30 @@ TEST(CornerNormals, ChangeInPatchesNextToAChange) {
   EXPECT_GT(beside, 0U);
 }
 
+/// A box whose corner moves through the corner of eight bricks: at one place a brick has a vertex and no triangles.
+TEST(CornerNormals, NextToABrickWithAVertexAndNoTriangles) {
+  std::size_t without = 0;
+  for (const double tolerance : {0.0, 0.01})
+    for (int n = 27; n < 36; ++n) {
+      const double h = 0.25, from = n * h + 0.1;
+      Volume volume({{{0, 0, 0}, {16, 16, 16}}, h, "xyz"});
+      fill(volume, [&](const dexel::Grid& grid, int i, int j) {
+        const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0));
+        return box(Vec3(from), Vec3(14.1))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
+      });
+      const MeshState state(volume, true, {});
+      for (const std::size_t k : state.active_bricks())
+        without += state.bricks.active(k)->vertices() > 0 && state.bricks.active(k)->edges() == 0;
+      const Mesher mesher = tolerance > 0 ? Mesher(volume, tolerance) : Mesher(volume);
+      const std::vector<std::size_t> all = mesher.patches();
+      const base::BulkVector<Vec3f> whole = mesher.corner_normals(mesher.patch(all), kSharp);
+      base::BulkVector<Vec3f> parts;
+      for (const std::size_t k : all)
+        for (const Vec3f& normal : mesher.corner_normals(mesher.patch(k), kSharp)) parts.push_back(normal);
+      ASSERT_LT(farthest(parts, whole), 1e-6) << tolerance << ", " << n;
+    }
+  EXPECT_GT(without, 0U);
+}
+
 }  // namespace
 }  // namespace riffler::marching::corner_normals_test
