@@ -183,16 +183,22 @@ def written(screen):
         assert path.stat().st_size > 5_000
 
 
-def endless(pieces):
-    """The first piece of a file, then nothing more: a window that draws slowly gets long slices of work, and all could
-    be written before the driver looks again."""
-    try:
-        yield next(pieces)
-        while True:
+class Endless:
+    """A file's first piece, then nothing more, in the form of a generator. A window that draws slowly gets long slices
+    of work, and a whole file could be written before the driver looks again."""
+
+    def __init__(self, pieces):
+        self._pieces, self._begun = pieces, False
+
+    def send(self, _):
+        if self._begun:
             time.sleep(0.001)
-            yield
-    finally:
-        pieces.close()
+        else:
+            self._begun = True
+            next(self._pieces)
+
+    def close(self):
+        self._pieces.close()
 
 
 def cancelled(screen):
@@ -201,7 +207,7 @@ def cancelled(screen):
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
     pieces = threemf_writer.pieces
-    threemf_writer.pieces = lambda *words: endless(pieces(*words))
+    threemf_writer.pieces = lambda *words: Endless(pieces(*words))
     try:
         yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False)
         yield lambda: running() == "Exporting"

@@ -219,7 +219,6 @@ def shapes_killed(mode, path=""):
     return said["digest"]
 
 
-@common.core_bound
 def test_killed_within_a_stroke_of_a_hand_tool_or_a_brush_and_recovered_to_the_byte():
     for mode in ("hand", "grab"):
         with fresh():
@@ -237,7 +236,6 @@ def test_killed_within_a_stroke_of_a_hand_tool_or_a_brush_and_recovered_to_the_b
             assert recovering.digest(common.content(bpy.data.objects["Stock"])) == had, mode
 
 
-@common.core_bound
 def test_strokes_of_brushes_and_hand_tools_continue_from_the_file_without_the_journal_s_stock():
     path = common.out("no_stock_shapes.blend")
     with fresh():
