@@ -30,8 +30,8 @@ def placed(journal: riffler.Journal, to_world: np.ndarray) -> riffler.Journal:
         out.add_tool(number, tool)
     for stroke in journal.strokes:
         rows = stroke.poses
-        axes = poses.unit(rows[:, 3:] @ to_world[:3, :3].T)
-        moved = np.hstack([poses.transform_points(to_world, rows[:, :3]), axes])
+        directions = [poses.unit(rows[:, k : k + 3] @ to_world[:3, :3].T) for k in range(3, rows.shape[1], 3)]
+        moved = np.hstack([poses.transform_points(to_world, rows[:, :3]), *directions])
         out.add_stroke(stroke.tool, moved, mode=stroke.mode, strength=stroke.strength)
     return out
 

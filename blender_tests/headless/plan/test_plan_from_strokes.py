@@ -76,6 +76,17 @@ def test_the_plan_is_edited_on_the_timeline_like_any_other():
     assert np.allclose(path.axes[0], np.array([0.3, 0, 1]) / np.hypot(0.3, 1), atol=1e-6)
 
 
+def test_a_recording_of_a_hand_tool_is_refused_by_its_name():
+    ob = carved((BALL, wave(10)))
+    journal = riffler.Journal()
+    journal.add_tool(1, riffler.Tool.gouge(6, 4, 0.5, 40))
+    journal.add_stroke(1, [(8, 10, 18, 0, 0, 1, 1, 0, 0), (40, 10, 18, 0, 0, 1, 1, 0, 0)])
+    path = common.out("hand_tool.rjournal")
+    journal.save(path)
+    bpy.context.view_layer.objects.active = ob
+    common.refused(lambda: planned(recording=path), "hand tool", "gouge 6")
+
+
 def test_a_moved_stock_moves_its_paths():
     ob = carved((BALL, wave(10)))
     ob.location, ob.rotation_euler = (5, 6, 7), (0, 0, np.pi / 2)
