@@ -8,7 +8,7 @@ import pytest
 
 GALLERY = Path(__file__).parents[3] / "docs" / "gallery"
 SCRIPTS = ["mouse", "mouse_fixtures", "sole", "verify_map", "pen_frames", "pen_counts"]
-SCRIPTS += ["concepts", "figure", "relief", "characters"]
+SCRIPTS += ["concepts", "figure", "relief", "linocut", "characters"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
