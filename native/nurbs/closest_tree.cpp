@@ -71,7 +71,6 @@ struct LeafMaker {
     }
     std::vector<Trapezoid> pieces;
     trims.append_pieces(edges, lower, upper, pieces);
-    for (const std::uint32_t edge : edges) add_border(net, lower, upper, edge);
     const Vec2 size = upper - lower;
     for (const Trapezoid& piece : pieces) {
       const Degrees made = degrees_over(degrees, piece);
@@ -86,17 +85,22 @@ struct LeafMaker {
                         true});
       nets.resize(nets.size() + made.size());
       trimmed_net(net, degrees, piece, nets.data() + nets.size() - made.size());
+      add_borders(net, lower, upper, piece);
     }
   }
 
-  void add_border(const Vec4* net, const Vec2& lower, const Vec2& upper, std::uint32_t edge) {
-    Vec2 a, b;
-    if (!trims.clipped(edge, lower, upper, a, b)) return;
-    const Vec2 size = upper - lower, from = lower + a * size, to = lower + b * size;
+  /// All sides of a trapezoid. An edge with nothing within the borders next to it is a side of none.
+  void add_borders(const Vec4* net, const Vec2& lower, const Vec2& upper, const Trapezoid& piece) {
+    const Vec2 corners[] = {piece.at({0, 0}), piece.at({1, 0}), piece.at({1, 1}), piece.at({0, 1})};
     const Degrees made{0, degrees.u + degrees.v};
-    borders.push_back({span, {from.y, to.y, {from.x, to.x}, {from.x, to.x}}, made, nets.size()});
-    nets.resize(nets.size() + made.size());
-    border_net(net, degrees, a, b, nets.data() + nets.size() - made.size());
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec2 &a = corners[k], &b = corners[(k + 1) % 4];
+      if (a == b) continue;
+      const Vec2 from = lower + a * (upper - lower), to = lower + b * (upper - lower);
+      borders.push_back({span, {from.y, to.y, {from.x, to.x}, {from.x, to.x}}, made, nets.size()});
+      nets.resize(nets.size() + made.size());
+      border_net(net, degrees, a, b, nets.data() + nets.size() - made.size());
+    }
   }
 };
 

@@ -98,21 +98,6 @@ TrimRegion::Edges TrimRegion::touching(const Edges& some, const Vec2& lower, con
   return out;
 }
 
-bool TrimRegion::clipped(std::uint32_t edge, const Vec2& lower, const Vec2& upper, Vec2& a, Vec2& b) const {
-  const Edge& e = edges_[edge];
-  const Vec2 way = e.b - e.a;
-  double from = 0, to = 1;
-  for (int k = 0; k < 2; ++k) {
-    if (way[k] == 0) continue;  // the edge touches the rectangle
-    const double t = (lower[k] - e.a[k]) / way[k], s = (upper[k] - e.a[k]) / way[k];
-    from = std::max(from, std::min(t, s)), to = std::min(to, std::max(t, s));
-  }
-  if (from > to) return false;
-  const auto at = [&](double t) { return glm::clamp((e.a + t * way - lower) / (upper - lower), 0.0, 1.0); };
-  a = at(from), b = at(to);
-  return true;
-}
-
 /// The lines of constant v between which no edge begins, ends, meets another, or meets a side of the rectangle.
 std::vector<double> TrimRegion::slabs(const Edges& edges, const Vec2& lower, const Vec2& upper) const {
   std::vector<double> out{lower.y, upper.y};

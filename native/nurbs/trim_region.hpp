@@ -36,8 +36,6 @@ class TrimRegion {
   Edges all() const;
   /// Those of `some` edges that touch a rectangle.
   Edges touching(const Edges& some, const Vec2& lower, const Vec2& upper) const;
-  /// The part of an edge in a rectangle, relative to it. False if there is none.
-  bool clipped(std::uint32_t edge, const Vec2& lower, const Vec2& upper, Vec2& a, Vec2& b) const;
   /// Appends the trapezoids of the region in a rectangle, which `edges` touch, by slabs between the edges' ends and
   /// crossings. Parameters are relative to the rectangle.
   void append_pieces(const Edges& edges, const Vec2& lower, const Vec2& upper, std::vector<Trapezoid>& out) const;

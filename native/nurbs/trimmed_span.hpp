@@ -18,10 +18,6 @@ class TrimmedSpan {
   TrimRegion::Edges touching(const TrimRegion::Edges& some, const Vec2& lower, const Vec2& upper) const {
     return region_.touching(some, span_.to_patch(lower), span_.to_patch(upper));
   }
-  /// The part of an edge in a rectangle that it touches, relative to it.
-  bool clipped(std::uint32_t edge, const Vec2& lower, const Vec2& upper, Vec2& a, Vec2& b) const {
-    return region_.clipped(edge, span_.to_patch(lower), span_.to_patch(upper), a, b);
-  }
   /// The parts of a rectangle that are inside, relative to it.
   void append_pieces(const TrimRegion::Edges& edges, const Vec2& lower, const Vec2& upper,
                      std::vector<Trapezoid>& out) const {

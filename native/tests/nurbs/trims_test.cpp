@@ -112,6 +112,17 @@ TEST(TrimmedNet, IsTheSameSurface) {
   }
 }
 
+TEST(TrimmedSurface, IgnoresBordersWithNothingNextToThem) {
+  Patch patch = plane(20);
+  const Loop square{{0.2, 0.2}, {0.5, 0.2}, {0.5, 0.5}, {0.2, 0.5}};
+  Loop spike = square;
+  spike.insert(spike.begin() + 3, {{0.8, 0.5}, {0.5, 0.5}});  // out and back
+  patch.trims = {spike};
+  EXPECT_NEAR(Surface({patch}).closest(std::vector{Vec3(16, 10, 1)})[0].distance, std::hypot(6, 1), 2e-9);
+  patch.trims = {square, square, {{0.7, 0.7}, {0.9, 0.7}, {0.9, 0.9}, {0.7, 0.9}}};  // the first two enclose nothing
+  EXPECT_NEAR(Surface({patch}).closest(std::vector{Vec3(6, 6, 1)})[0].distance, std::hypot(8, 8, 1), 2e-9);
+}
+
 TEST(TrimmedSurface, HasTheNearestPointOfBordersWithNoise) {
   // A roller of radius 6 around z, whose upper border differs from z = 9 by 1e-12 mm.
   Patch patch = shapes::turned(shapes::line({6, -5}, {6, 9}), 4);
