@@ -52,7 +52,7 @@ std::vector<std::size_t> AdaptiveState::Turns::run(Layer& layer, const Progress&
                             : 1,
         [&](std::size_t begin, std::size_t end) {
           GroupInput input;
-          StarCollapser collapser({input.vertices, input.triangles, input.errors}, state_.tolerance_);
+          mesh::StarCollapser collapser({input.vertices, input.triangles, input.errors}, state_.tolerance_);
           for (std::size_t n = begin; n < end; ++n) now[n] = result(layer, tasks[n], group, input, collapser);
         },
         base::part(progress, from, group == 0 ? 1 : from + 0.05));
@@ -165,7 +165,7 @@ void AdaptiveState::Turns::advance(const Layer& layer, std::size_t brick, std::s
 
 /// The result of a group: the earlier one if its input has not changed, null if it has no triangles.
 AdaptiveState::Result AdaptiveState::Turns::result(const Layer& layer, std::size_t brick, int group, GroupInput& input,
-                                                   StarCollapser& collapser) const {
+                                                   mesh::StarCollapser& collapser) const {
   const Vec3i at = bricks_.place(brick);
   input.clear();
   if (!(group == 0 ? gather_inside(brick, input) : gather_border(at, group, input))) return nullptr;

@@ -26,7 +26,8 @@ class AdaptiveState::Turns {
   std::vector<std::size_t> due(Layer& layer, int group);
   void prepare(const Layer& layer, const std::vector<std::size_t>& tasks, std::size_t turn);
   void advance(const Layer& layer, std::size_t brick, std::size_t turn);
-  Result result(const Layer& layer, std::size_t brick, int group, GroupInput& input, StarCollapser& collapser) const;
+  Result result(const Layer& layer, std::size_t brick, int group, GroupInput& input,
+                mesh::StarCollapser& collapser) const;
   bool gather_border(const Vec3i& at, int group, GroupInput& input) const;
   bool gather_inside(std::size_t brick, GroupInput& input) const;
   void mark_movable(const Layer& layer, std::size_t brick, int group, GroupInput& input) const;

@@ -28,7 +28,7 @@ void GroupInput::hash() {
   digest.finish();
 }
 
-void GroupInput::simplify(StarCollapser& collapser, int group) {
+void GroupInput::simplify(mesh::StarCollapser& collapser, int group) {
   collapser.begin(0, vertices.size(), share_of(group),
                   [&](std::int32_t v) { return movable[static_cast<std::size_t>(v)] != 0; });
   for (std::size_t t = 0; t < triangles.size(); ++t)

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/mix.hpp"
-#include "marching/star_collapse.hpp"
 #include "marching/vertex_groups.hpp"
+#include "mesh/decimate/star_collapse.hpp"
 
 namespace riffler::marching {
 
@@ -75,7 +75,7 @@ struct GroupInput {
   void clear();
   void hash();
   /// Merges vertices of the group. The triangles and errors change.
-  void simplify(StarCollapser& collapser, int group);
+  void simplify(mesh::StarCollapser& collapser, int group);
 };
 
 /// What the simplification of a group left; of group 0, which is the last to change its triangles, the final triangles.

@@ -38,6 +38,10 @@ constexpr std::size_t kPrepared = 1 << 16;
 // Share of the tolerance by which vertices of a plane may miss it.
 constexpr double kSlack = 1.0 / 512;
 
+// Share of the tolerance for merges on curves before edges are queued. It doubles the speed on curves, and leaves a
+// tenth more triangles.
+constexpr double kCurved = 0.1;
+
 void check_limits(const DecimateLimits& limits) {
   if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
   if (limits.tolerance && !(*limits.tolerance >= 0 && std::isfinite(*limits.tolerance)))
@@ -310,7 +314,7 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   if (!limits.tolerance || limits.triangles)
     return Reduction{mesh, local, centre, grain, tolerance, target, limits.tolerance.has_value()}.run(rest);
 
-  FlatPass flats = remove_inside_planes(local, kSlack * tolerance, base::part(rest, 0, 0.2));
+  FlatPass flats = remove_inside_planes(local, kSlack * tolerance, kCurved * tolerance, base::part(rest, 0, 0.2));
   Mesh left;
   for (const int v : flats.source) left.vertices.push_back(mesh.vertices[v]);
   left.triangles = local.triangles;

@@ -28,6 +28,17 @@ class FlatBrick {
 
   /// Returns the number of triangles that vanish.
   std::size_t run(double slack);
+
+  /// A side between two vertices that stay, of a triangle that may have got another tip.
+  struct Side {
+    int a, b;            // of the mesh
+    Vec3 before, after;  // normal of its triangle, of any length
+    bool changed;
+  };
+  /// After `run`: merges vertices of curves, too, with StarCollapser. Returns the largest distance in mm between the
+  /// old and the new surface, in both directions, at most `tolerance`. Only the triangles of one brick are seen, so
+  /// others may fold onto them: adds the sides where that is possible.
+  double merge_stars(double tolerance, std::vector<Side>& sides);
   /// Writes the triangles back; those that vanished get -1.
   void store(Triangles& all) const;
   /// mm, the largest distance between a point of the old surface and its place on the new one, in both directions.
@@ -49,6 +60,7 @@ class FlatBrick {
   bool grow(int seed, const Plane& plane, double slack);
   Plane fitted() const;
   void find_inner();
+  bool winds_once(int v) const;
   bool remove(int v);
   bool gather(int v);
   double worst_if_to(std::size_t target) const;

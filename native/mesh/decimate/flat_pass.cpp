@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "mesh/decimate/flat_brick.hpp"
+#include "mesh/fold.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::mesh {
@@ -126,9 +128,43 @@ std::vector<int> drop_vertices(Mesh& mesh) {
   return source;
 }
 
+/// The bricks whose merges on curves would make a triangle fold onto one that another brick sees.
+std::vector<char> folding(const std::vector<std::vector<FlatBrick::Side>>& sides) {
+  struct Place {
+    int lower, upper;
+    std::size_t brick, side;
+  };
+  std::vector<Place> places;
+  for (std::size_t brick = 0; brick < sides.size(); ++brick)
+    for (std::size_t n = 0; n < sides[brick].size(); ++n) {
+      const FlatBrick::Side& side = sides[brick][n];
+      places.push_back({std::min(side.a, side.b), std::max(side.a, side.b), brick, n});
+    }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.lower, a.upper, a.brick, a.side) < std::tie(b.lower, b.upper, b.brick, b.side);
+  });
+  std::vector<char> out(sides.size(), 0);
+  const auto side_at = [&](const Place& p) -> const FlatBrick::Side& { return sides[p.brick][p.side]; };
+  const auto changed = [&](const Place& p) { return side_at(p).changed && !out[p.brick]; };
+  const auto normal = [&](const Place& p) { return out[p.brick] ? side_at(p).before : side_at(p).after; };
+  // A brick that keeps its triangles may fold with one that does not.
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t n = 0; n < places.size(); ++n)
+      for (std::size_t m = n + 1; m < places.size() && places[m].lower == places[n].lower; ++m) {
+        const Place &p = places[n], &q = places[m];
+        if (q.upper != p.upper) break;
+        if (side_at(p).a == side_at(q).a || !(changed(p) || changed(q)) || !opposed(normal(p), normal(q))) continue;
+        for (const Place* one : {&p, &q})
+          if (changed(*one)) out[one->brick] = 1, again = true;
+      }
+  }
+  return out;
+}
+
 }  // namespace
 
-FlatPass remove_inside_planes(Mesh& mesh, double slack, const Progress& progress) {
+FlatPass remove_inside_planes(Mesh& mesh, double slack, double curved, const Progress& progress) {
   FlatPass result;
   // Each turn has larger bricks at other places, so that what lay between two bricks lies inside of one.
   for (int turn = 0; turn < kFlatTurns && mesh.triangles.size() > 1; ++turn) {
@@ -137,15 +173,35 @@ FlatPass remove_inside_planes(Mesh& mesh, double slack, const Progress& progress
     const std::vector<std::uint8_t> uses = corners_at(mesh);
     std::vector<double> moved(bricks.size(), 0);
     std::vector<std::size_t> lost(bricks.size(), 0);
+    const bool stars = turn == 0 && curved > 0;
+    Triangles merged;  // with the merges on curves
+    std::vector<std::vector<FlatBrick::Side>> sides(stars ? bricks.size() : 0);
+    std::vector<double> errors(sides.size(), 0);
+    if (stars) merged.resize(mesh.triangles.size());
     const auto run = [&](std::size_t i, std::size_t) {
       FlatBrick brick(mesh.vertices, mesh.triangles, bricks[i], uses);
       lost[i] = brick.run(slack);
-      if (lost[i] == 0) return;
-      brick.store(mesh.triangles);
-      moved[i] = brick.moved();
+      if (lost[i] > 0) {
+        brick.store(mesh.triangles);
+        moved[i] = brick.moved();
+      }
+      if (!stars) return;
+      for (const int t : bricks[i]) merged[t] = mesh.triangles[t];
+      errors[i] = brick.merge_stars(curved, sides[i]);
+      brick.store(merged);
     };
     base::parallel_for(bricks.size(), 1, run, base::part(now, 0.2, 1));
     result.moved += *std::max_element(moved.begin(), moved.end());
+    if (stars) {
+      const std::vector<char> kept = folding(sides);
+      double error = 0;
+      for (std::size_t i = 0; i < bricks.size(); ++i) {
+        if (kept[i]) continue;
+        error = std::max(error, errors[i]);
+        for (const int t : bricks[i]) mesh.triangles[t] = merged[t];
+      }
+      result.moved += error;
+    }
     drop_triangles(mesh.triangles);
     if (std::accumulate(lost.begin(), lost.end(), std::size_t{0}) < mesh.triangles.size() / 16) break;
   }

@@ -1,4 +1,4 @@
-// Removes the vertices inside planes before edges are queued.
+// Removes the vertices inside planes, and some of those on curves, before edges are queued.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,14 @@ struct FlatPass {
 };
 
 /// Removes the vertices inside planes from a valid mesh; most vertices of a volume's mesh are such. This needs no
-/// queue, no costs and no traces, so it takes a fraction of the time. Edges and corners of planes stay, as do all
-/// vertices elsewhere. Triangles and vertices keep their order; vertices without triangles are removed. The bytes are
-/// the same for any number of threads.
+/// queue, no costs and no traces, so it takes a fraction of the time. Edges and corners of planes stay. Triangles and
+/// vertices keep their order; vertices without triangles are removed. The bytes are the same for any number of threads.
 ///
 /// A vertex may be `slack` (mm) from its plane. FlatBrick says how far that moves points, in each of at most kFlatTurns
 /// turns.
-FlatPass remove_inside_planes(Mesh& mesh, double slack, const Progress& progress = {});
+///
+/// `curved`: mm; if positive, the first turn also merges vertices of curves whose surface moves by no more than that.
+FlatPass remove_inside_planes(Mesh& mesh, double slack, double curved, const Progress& progress = {});
 
 inline constexpr int kFlatTurns = 3;
 

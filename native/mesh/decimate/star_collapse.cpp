@@ -1,18 +1,19 @@
-#include "marching/star_collapse.hpp"
+#include "mesh/decimate/star_collapse.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace riffler::marching {
+namespace riffler::mesh {
 
 namespace {
 
-constexpr double kTouching = -0.98;   // cosine of two triangles that all but lie on each other
-constexpr double kNear = 1e-4;        // weight of a target's distance compared with its height
-constexpr int kTargets = 3;           // looked at for each vertex, of the least guesses
-constexpr int kLevels = 8;            // of the error, from the cheapest merges to the dearest
+constexpr double kTouching = -0.98;  // cosine of two triangles that all but lie on each other
+constexpr double kNear = 1e-4;       // weight of a target's distance compared with its height
+constexpr int kTargets = 3;          // looked at for each vertex, of the least guesses
+constexpr int kLevels = 8;           // of the error, from the cheapest merges to the dearest
+constexpr int kQuickLevels = 2;
 constexpr double kFlat = 1.0 / 4096;  // error that needs no closer look, over the tolerance
 
 double squared(const Vec3& a) {
@@ -58,7 +59,7 @@ void StarCollapser::add(std::uint32_t triangle) {
 }
 
 void StarCollapser::run() {
-  if (wide_) {
+  if (wide_ && effort_ == Effort::Full) {
     block_.clear();
     for (std::size_t k = 0; k < stars_.size(); ++k)
       if (!stars_[k].locked) block_.push_back(static_cast<std::int32_t>(k));
@@ -66,7 +67,8 @@ void StarCollapser::run() {
   }
   // Cheap merges first.
   spread();
-  for (int level = 1; level <= kLevels; ++level) sweep(most_error_ * level / kLevels, wide_ ? 24 : kMostFaces);
+  const int levels = effort_ == Effort::Full ? kLevels : kQuickLevels;
+  for (int level = 1; level <= levels; ++level) sweep(most_error_ * level / levels, wide_ ? 24 : kMostFaces);
   for (const Face& face : faces_) {
     mesh_.triangles[face.triangle] = face.v;
     mesh_.errors[face.triangle] = face.error;
@@ -354,4 +356,4 @@ void StarCollapser::commit(std::int32_t from, std::int32_t to, double error, dou
   for (int n = 0; n < count_; ++n) again(slot(sides_[n].a));
 }
 
-}  // namespace riffler::marching
+}  // namespace riffler::mesh

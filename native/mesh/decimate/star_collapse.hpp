@@ -7,12 +7,12 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler::marching {
+namespace riffler::mesh {
 
 /// A mesh whose triangles lose vertices. A removed triangle has −1 for all its vertices.
 struct AdaptiveMesh {
-  const mesh::Vertices& vertices;
-  mesh::Triangles& triangles;
+  const Vertices& vertices;
+  Triangles& triangles;
   /// For each triangle, mm: an upper bound of the distance of its points from their points on the first surface.
   base::BulkVector<float>& errors;
 };
@@ -31,9 +31,16 @@ struct AdaptiveMesh {
 /// this group changes: groups without a common triangle may be processed in parallel and in any order.
 class StarCollapser {
  public:
+  enum class Effort {
+    Full,
+    Quick,  // leaves more triangles, and flat blocks to the caller
+  };
   /// `tolerance`: mm, > 0.
-  StarCollapser(const AdaptiveMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {}
+  StarCollapser(const AdaptiveMesh& mesh, double tolerance, Effort effort = Effort::Full)
+      : mesh_(mesh), tolerance_(tolerance), effort_(effort) {}
 
+  /// The triangles around each vertex of a group must form one closed disc that winds around it once.
+  ///
   /// Starts a group: vertices first … first + count − 1 with `in_group(vertex)`. It may use `share` of the tolerance.
   template <class InGroup>
   void begin(std::int32_t first, std::size_t count, double share, InGroup&& in_group) {
@@ -131,6 +138,7 @@ class StarCollapser {
 
   AdaptiveMesh mesh_;
   double tolerance_;
+  Effort effort_;
   double most_error_ = 0;  // of this group
   bool wide_ = false;      // the group fills an area: look for flat blocks
   std::int32_t first_ = 0;
@@ -160,4 +168,4 @@ class StarCollapser {
   bool has_ring_ = false;
 };
 
-}  // namespace riffler::marching
+}  // namespace riffler::mesh

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "marching/star_collapse.hpp"
+#include "mesh/decimate/star_collapse.hpp"
 
-namespace riffler::marching {
+namespace riffler::mesh {
 
 namespace {
 
@@ -148,4 +148,4 @@ bool StarCollapser::fan(const std::int32_t* begin, const std::int32_t* end, cons
   return true;
 }
 
-}  // namespace riffler::marching
+}  // namespace riffler::mesh
