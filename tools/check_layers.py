@@ -21,7 +21,9 @@ GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
 # What a topic's file may say outside of every namespace: macros, types of C libraries, specialisations for std.
 OUTSIDE = re.compile(r"\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
 # Functions of the C library whose last bit is another one on another system, and what to call in their place.
-NOT_THE_SAME = {"std::hypot(": "geom::hypot"}
+HYPOT = {"std::hypot(": "geom::hypot"}
+OWN = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "expm1", "log", "log2", "log10", "pow", "tanh")
+NOT_THE_SAME = HYPOT | {f"std::{name}(": f"base::{name}" for name in OWN} | {"std::cbrt(": "base::pow"}
 # Headers of one kind of system, and where they may be used: in the folders posix and windows, of which a build takes
 # one, and in what is for Linux alone: the program for makers' libraries, fuzzers and tests.
 OF_A_SYSTEM = re.compile(
@@ -133,10 +135,11 @@ def bit_problems(root: Path) -> list[str]:
     """The same bytes on every system. Tests and benchmarks, which only compare, may call what they like."""
     problems = []
     for folder in [*topics(root), PUBLIC.removeprefix("native/"), "reference", "stress", "bindings"]:
+        names = HYPOT if folder in {"reference", "stress"} else NOT_THE_SAME
         for place, line in lines(root, root / "native" / folder, ".cpp", ".hpp"):
             problems += [
                 f"{place}: {name[:-1]} differs between systems: use {own}"
-                for name, own in NOT_THE_SAME.items()
+                for name, own in names.items()
                 if name in line
             ]
     return problems

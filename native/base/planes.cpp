@@ -3,12 +3,12 @@
 #include <zlib.h>
 
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <new>
 #include <stdexcept>
 #include <type_traits>
 
+#include "base/functions.hpp"
 #include "riffler/base/error.hpp"
 
 namespace riffler::base {
@@ -42,7 +42,7 @@ bool looks_like_noise(std::span<const std::uint8_t> bytes) {
   if (static_cast<double>(repeats) > 0.03 * n) return false;
   double bits = 0;  // order-0 entropy of all bytes together
   for (const std::uint32_t c : count)
-    if (c > 0) bits += c * std::log2(n / c);
+    if (c > 0) bits += c * base::log2(n / c);
   return bits > 7.6 * n;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
+
 namespace riffler::brush {
 
 Box3 Reach::box() const {
@@ -96,7 +98,7 @@ Vec3 Displacement::free(const Vec3& p, const Vec3& n) const {
   }
   const double angle = f * amount_;
   const Vec3 off = r - height * axis_;
-  return (std::cos(angle) - 1) * off + std::sin(angle) * glm::cross(axis_, off);
+  return (base::cos(angle) - 1) * off + base::sin(angle) * glm::cross(axis_, off);
 }
 
 Vec3 Displacement::operator()(const Vec3& p, const Vec3& n) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base/functions.hpp"
 #include "collide/outline_lanes.hpp"
 #include "collide/outline_runs.hpp"
 
@@ -30,7 +31,7 @@ Vec2 sink(const tool::Outline& outline, Vec2 p, double step) {
   for (; step > 1e-13 * (1 + std::abs(p.y)); step *= 0.7)
     for (int turn = 0; turn < 16; ++turn) {
       const double angle = turn * 0.39269908169872414;
-      const Vec2 q = p + step * Vec2(std::cos(angle), std::sin(angle));
+      const Vec2 q = p + step * Vec2(base::cos(angle), base::sin(angle));
       if (const double d = value(q); d < least) least = d, p = q, turn = -1;
     }
   return {std::abs(p.x), p.y};

@@ -1,7 +1,6 @@
 #include "collide/winding.hpp"
 
-#include <cmath>
-
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::collide {
@@ -15,8 +14,8 @@ constexpr double kFar = 5;  // distance from a sphere's centre, in radii, beyond
 double half_angle(const Corners& t, const Vec3& p) {
   const Vec3 a = t.a - p, b = t.b - p, c = t.c - p;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  return std::atan2(glm::dot(a, glm::cross(b, c)),
-                    la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+  return base::atan2(glm::dot(a, glm::cross(b, c)),
+                     la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
 }  // namespace

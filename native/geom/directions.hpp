@@ -1,8 +1,7 @@
 // Lengths of vectors and angles between them.
 #pragma once
 
-#include <cmath>
-
+#include "base/functions.hpp"
 #include "riffler/geom/vec.hpp"
 
 namespace riffler::geom {
@@ -15,7 +14,7 @@ inline Vec3 unit_or_zero(const Vec3& v) {
 
 /// Angle in rad between vectors of any length but 0. Accurate for angles from 1e-12 up to π.
 inline double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  return base::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 }  // namespace riffler::geom

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/functions.hpp"
 #include "riffler/geom/vec.hpp"
 
 namespace riffler::geom {
@@ -17,7 +18,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// `v` rotated by `angle` (rad) about the unit vector `k`, right-handed (Rodrigues).
 inline Vec3 rotate_about(const Vec3& v, const Vec3& k, double angle) {
-  return std::cos(angle) * v + std::sin(angle) * glm::cross(k, v) + (1 - std::cos(angle)) * glm::dot(k, v) * k;
+  return base::cos(angle) * v + base::sin(angle) * glm::cross(k, v) + (1 - base::cos(angle)) * glm::dot(k, v) * k;
 }
 
 /// `v` rotated by the rotation vector `turn` (rad).

@@ -1,6 +1,6 @@
 #include "riffler/geom/pose.hpp"
 
-#include <cmath>
+#include "base/functions.hpp"
 
 namespace riffler::geom {
 
@@ -8,7 +8,7 @@ Motion::Motion(const Pose& from, const Pose& to) : from_(from), to_(to), angle_(
   const Vec3 cross = glm::cross(from.axis, to.axis);
   const double sine = glm::length(cross), cosine = glm::dot(from.axis, to.axis);
   // atan2 keeps its relative accuracy at both ends, where acos and asin lose half of their digits.
-  angle_ = std::atan2(sine, cosine);
+  angle_ = base::atan2(sine, cosine);
   if (sine > 0) {
     const Vec3 normal = cross / sine;
     rotation_ = angle_ * normal;
@@ -29,8 +29,8 @@ Motion::Motion(const Pose& from, const Pose& to, const Vec3& about, double angle
 Vec3 Motion::axis(double t) const {
   if (t == 1) return to_.axis;
   if (angle_ == 0) return from_.axis;
-  if (mean_ != Vec3(0)) return mean_ + std::cos(t * angle_) * (from_.axis - mean_) + std::sin(t * angle_) * side_;
-  return std::cos(t * angle_) * from_.axis + std::sin(t * angle_) * side_;
+  if (mean_ != Vec3(0)) return mean_ + base::cos(t * angle_) * (from_.axis - mean_) + base::sin(t * angle_) * side_;
+  return base::cos(t * angle_) * from_.axis + base::sin(t * angle_) * side_;
 }
 
 }  // namespace riffler::geom

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::geom {
@@ -43,7 +44,7 @@ Turn turn_between(const Mat3& from, const Mat3& to) {
   if (w < 0) w = -w, v = -v;
   const double length = glm::length(v);
   if (!(length > 0)) return {};
-  return {v / length, 2 * std::atan2(length, w)};
+  return {v / length, 2 * base::atan2(length, w)};
 }
 
 bool half_turn(const RolledPose& from, const RolledPose& to) {

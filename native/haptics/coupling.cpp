@@ -1,10 +1,10 @@
 #include "riffler/haptics/coupling.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "riffler/haptics/settings.hpp"
 
@@ -26,8 +26,8 @@ Vec3 turn(const Vec3& from, const Vec3& to) {
   const double along = glm::dot(from, to);
   const Vec3 c = glm::cross(from, along > 0 ? to - from : to + from);
   const double s = glm::length(c);
-  if (along > 0) return s > 0 ? std::atan2(s, along) / s * c : Vec3(0);
-  return s > 1e-15 ? std::atan2(s, along) / s * c : kPi * any_square_to(from);
+  if (along > 0) return s > 0 ? base::atan2(s, along) / s * c : Vec3(0);
+  return s > 1e-15 ? base::atan2(s, along) / s * c : kPi * any_square_to(from);
 }
 
 /// Rotation vector of a rotation matrix, via its quaternion, computed from its largest component (Shepperd 1978).
@@ -45,7 +45,7 @@ Vec3 rotation_vector(const Mat3& r) {
   }
   if (w < 0) w = -w, v = -v;
   const double s = glm::length(v);
-  return s > 0 ? 2 * std::atan2(s, w) / s * v : Vec3(0);
+  return s > 0 ? 2 * base::atan2(s, w) / s * v : Vec3(0);
 }
 
 /// Spring force over stiffness, and energy over stiffness, at a stretch `x` ≤ `end`. Grows up to `limit`, then stays

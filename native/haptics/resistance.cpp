@@ -1,7 +1,8 @@
 #include "riffler/haptics/resistance.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/functions.hpp"
 
 namespace riffler::haptics {
 
@@ -15,8 +16,8 @@ void Resistance::PerWay::add(double amount, double length, double memory) {
     way = 0.02;
   }
   // A resistance met evenly along the travel keeps the factor 1 − e^(−length/memory). For zero travel, the limit.
-  const double kept = std::exp(-length / memory);
-  const double share = length > 1e-9 * memory ? -std::expm1(-length / memory) / length : 1 / memory;
+  const double kept = base::exp(-length / memory);
+  const double share = length > 1e-9 * memory ? -base::expm1(-length / memory) / length : 1 / memory;
   sum = kept * sum + share * amount;
   way = kept * way + (1 - kept);
 }
@@ -42,7 +43,7 @@ void Resistance::learn(const Twist& way, const Wrench& wrench, double dt, double
   const double before = area_.sum;
   area_.add(against * dt, slid, memory_);
   if (const double now = area_.sum; now > 0 && force > 0) {
-    const double old = std::min(1.0, before * std::exp(-slid / memory_) / now);
+    const double old = std::min(1.0, before * base::exp(-slid / memory_) / now);
     arm_ = old * arm_ + (1 - old) * arm;
   }
   engaged_.add(force > 0 ? slid : 0, slid, memory_);

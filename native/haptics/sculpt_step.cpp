@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "riffler/base/check.hpp"
 
 namespace riffler::haptics {
@@ -22,7 +23,7 @@ Pose moved(const Pose& from, const Twist& way) {
   const double angle = glm::length(way.angular);
   if (angle == 0) return {from.tip + way.linear, from.axis};
   const Vec3 side = glm::cross(way.angular / angle, from.axis);
-  return {from.tip + way.linear, glm::normalize(std::cos(angle) * from.axis + std::sin(angle) * side)};
+  return {from.tip + way.linear, glm::normalize(base::cos(angle) * from.axis + base::sin(angle) * side)};
 }
 
 /// The displacement between two poses, about `from`'s tip.

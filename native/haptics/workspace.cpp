@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "riffler/haptics/coupling.hpp"
 #include "riffler/haptics/settings.hpp"
 
@@ -19,7 +20,7 @@ Mat3 rotation(const Vec3& turn) {
   if (angle == 0) return Mat3(1);
   const Vec3 n = turn / angle;
   const Mat3 cross(Vec3(0, n.z, -n.y), Vec3(-n.z, 0, n.x), Vec3(n.y, -n.x, 0));
-  return Mat3(1) + std::sin(angle) * cross + (1 - std::cos(angle)) * cross * cross;
+  return Mat3(1) + base::sin(angle) * cross + (1 - base::cos(angle)) * cross * cross;
 }
 
 }  // namespace

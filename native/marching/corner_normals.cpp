@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/vertex_star.hpp"
@@ -79,7 +80,7 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double twice = glm::length(cross);
   if (!(twice > 0)) return out;
   out.normal = cross / twice;
-  out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)), 0};
+  out.angle = {base::atan2(twice, glm::dot(b - a, c - a)), base::atan2(twice, glm::dot(c - b, a - b)), 0};
   out.angle[2] = kPi - out.angle[0] - out.angle[1];
   return out;
 }
@@ -89,7 +90,7 @@ Wedge wedge_at(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 cross = glm::cross(b - a, c - a);
   const double twice = glm::length(cross);
   if (!(twice > 0)) return {Vec3(0.0), 0};
-  return {cross / twice, std::atan2(twice, glm::dot(b - a, c - a))};
+  return {cross / twice, base::atan2(twice, glm::dot(b - a, c - a))};
 }
 
 /// The mean of the fan's normals within an angle of `own`, or `own` if there is none.
@@ -236,7 +237,7 @@ std::vector<OutsideWedge> wedges_outside(const MeshState& state, const MeshPatch
 class Means {
  public:
   Means(const Fans<Wedge>& fans, std::size_t vertices, double sharp)
-      : fans_(fans), least_(std::cos(sharp)), half_(std::cos(sharp / 2)), common_(vertices) {
+      : fans_(fans), least_(base::cos(sharp)), half_(base::cos(sharp / 2)), common_(vertices) {
     for (std::size_t v = 0; v < vertices; ++v)
       if (const std::span<const Wedge> fan = fans.at(v); is_smooth(fan))
         common_[v] = mean_near(fan, fan.front().normal, least_);
@@ -262,7 +263,7 @@ class Means {
 }  // namespace
 
 base::BulkVector<Vec3f> corner_normals(const MeshState& state, const MeshPatch& patch, double sharp) {
-  if (state.adaptive) return adaptive_normals(state, patch, std::cos(sharp));
+  if (state.adaptive) return adaptive_normals(state, patch, base::cos(sharp));
   const std::vector<OutsideWedge> outside = wedges_outside(state, patch);
   Fans<Wedge> fans(patch.vertices.size());
   for (const Vec3i& t : patch.triangles)

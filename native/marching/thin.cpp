@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/functions.hpp"
 #include "marching/lattice.hpp"
 #include "marching/signs.hpp"
 #include "riffler/base/parallel.hpp"
@@ -75,7 +76,7 @@ double kept_by(std::vector<std::pair<double, double>> lengths, double total) {
     length = l;
     if ((sum += volume) > 0.1 * total) break;
   }
-  const double unit = std::pow(10, std::floor(std::log10(length)) - 1);
+  const double unit = base::pow(10, std::floor(base::log10(length)) - 1);
   return std::floor(0.99 * length / unit) * unit;
 }
 

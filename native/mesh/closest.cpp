@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/median_tree.hpp"
 #include "mesh/adjacency.hpp"
@@ -221,7 +222,7 @@ void Closest::prepare_sides(const Mesh& mesh) {
     face_normals_[t] = geom::unit_or_zero(glm::cross(c.b - c.a, c.c - c.a));
     for (int k = 0; k < 3; ++k) {
       const Vec3 e = p[(k + 1) % 3] - p[k], f = p[(k + 2) % 3] - p[k];
-      const double angle = std::atan2(glm::length(glm::cross(e, f)), glm::dot(e, f));
+      const double angle = base::atan2(glm::length(glm::cross(e, f)), glm::dot(e, f));
       vertex_normals_[triangles_[t][k]] += angle * face_normals_[t];
     }
   }

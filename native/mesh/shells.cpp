@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/functions.hpp"
+
 namespace riffler::mesh {
 
 namespace {
@@ -212,7 +214,7 @@ std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell,
   for (std::size_t s = 0; s < count; ++s) {
     Extent& e = shells[s];
     const Vec3 size = e.box.size();
-    if (std::abs(e.volume) <= kFlat * std::pow(std::max({size.x, size.y, size.z}), 3)) e.volume = 0;
+    if (std::abs(e.volume) <= kFlat * base::pow(std::max({size.x, size.y, size.z}), 3)) e.volume = 0;
     out[s].volume = std::abs(e.volume);  // 0 without volume
     if (e.volume == 0) continue;
     (open_to_either[s] ? either : e.volume < 0 ? inwards : outwards) = true;

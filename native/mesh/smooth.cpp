@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/functions.hpp"
 #include "geom/float32.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/fold.hpp"
@@ -79,7 +80,7 @@ class Neighbours {
       const Vec3& a = mesh.vertices[v.x];
       return glm::cross(mesh.vertices[v.y] - a, mesh.vertices[v.z] - a);
     };
-    const double least = std::cos(angle);
+    const double least = base::cos(angle);
     std::vector<char> sharp(3 * mesh.triangles.size(), 0);
     base::parallel_for(sharp.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t half = begin; half < end; ++half) {
@@ -227,7 +228,7 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, d
   if (iterations < 0) throw std::invalid_argument("iterations must not be negative, not " + std::to_string(iterations));
   if (tolerance && !(*tolerance >= 0 && std::isfinite(*tolerance)))
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*tolerance));
-  if (!(feature_angle > 0 && feature_angle <= std::acos(-1.0)))
+  if (!(feature_angle > 0 && feature_angle <= base::acos(-1.0)))
     throw std::invalid_argument("feature_angle must be above 0 and at most pi, not " + std::to_string(feature_angle));
   validate(mesh);
   const EdgeTable edges(mesh);

@@ -1,8 +1,8 @@
 #include "mesh/smooth_normals.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "riffler/base/parallel.hpp"
 
@@ -44,7 +44,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
       faces[t] = geom::unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0]));
     }
   });
-  const double least = std::cos(crease);
+  const double least = base::cos(crease);
   base::parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::nc {
@@ -132,7 +133,7 @@ std::optional<Link> LinkFinder::from_stretch(const Pose& pose, const Vec3& direc
       for (const double rise : {1.0, 0.0})
         for (int k = 0; k < kAround; ++k) {
           const double a = 2 * kPi * k / kAround;
-          const Vec3 way = glm::normalize(Vec3(std::cos(a), std::sin(a), rise));
+          const Vec3 way = glm::normalize(Vec3(base::cos(a), base::sin(a), rise));
           const Pose end = moved(from, aside * reach_.radius * way);
           if (clear(from, end) && clear(end, above(end))) return Link{{from, end, above(end)}, false};
         }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/functions.hpp"
+
 namespace riffler::nc {
 
 namespace {
@@ -32,7 +34,7 @@ Box3 ToolEnvelope::swept_box(const Pose& from, const Pose& to) const {
   Box3 box;
   for (const Pose* pose : {&from, &to}) box.add(pose->tip), box.add(pose->tip + length * pose->axis);
   // No point of the axis is further than length · angle² / 8 from the straight line between its two places.
-  const double chord = glm::length(to.axis - from.axis), angle = 2 * std::asin(std::min(1.0, 0.5 * chord));
+  const double chord = glm::length(to.axis - from.axis), angle = 2 * base::asin(std::min(1.0, 0.5 * chord));
   return box.grown(radius + length * angle * angle / 8 + 1e-9 * (1 + length));
 }
 

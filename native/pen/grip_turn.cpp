@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
@@ -31,7 +32,7 @@ Vec3 rotated(const UnitQuaternion& q, const Vec3& v) {
 void GripTurn::turn(const UnitQuaternion& q, double now, PenSample& sample) noexcept {
   const Vec3 axis = glm::normalize(rotated(q, own_)), before = sample.pose.axis;
   const double along = glm::dot(q.v, own_);
-  const double twist = geom::hypot(q.w, along) > 1e-6 ? 2 * std::atan2(along, q.w) : twist_;
+  const double twist = geom::hypot(q.w, along) > 1e-6 ? 2 * base::atan2(along, q.w) : twist_;
   const double dt = now - time_;
   if (!turned_) {
     sample.spin = std::remainder(twist, kTwoPi);
@@ -41,7 +42,7 @@ void GripTurn::turn(const UnitQuaternion& q, double now, PenSample& sample) noex
     sample.spin += rolled;
     if (dt > 0) {
       const Vec3 cross = glm::cross(before, axis);
-      const double sine = glm::length(cross), angle = std::atan2(sine, glm::dot(before, axis));
+      const double sine = glm::length(cross), angle = base::atan2(sine, glm::dot(before, axis));
       const Vec3 rate = ((sine > 0 ? angle / sine : 0) * cross + rolled * axis) / dt;
       sample.turning += dt / (dt + smooth_) * (rate - sample.turning);
     }

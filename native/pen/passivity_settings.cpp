@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "riffler/pen/arms/geometry.hpp"
@@ -24,7 +25,7 @@ struct ArmBounds {
 ArmBounds bounds_of(const PenGeometry& pen, Arm arm) {
   constexpr double kRight = kPi / 2;
   const ArmLinks& links = pen.arms[index(arm)];
-  const auto sine = [&](double elbow) { return std::sin(std::clamp(elbow, -kRight, kRight)); };
+  const auto sine = [&](double elbow) { return base::sin(std::clamp(elbow, -kRight, kRight)); };
   const double low = sine(pen.elbow_low), high = sine(pen.elbow_high);
   // The end's distance from the shoulder, an upper bound of that from the axis: c² = a² + b² + 2 a b sin(θ2 − θ3).
   const double a = links.upper, b = links.fore;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::pen {
@@ -25,10 +26,10 @@ Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexce
   const Vec3 upright = glm::cross(frame.right, frame.up);
   // Each tilt is the angle of the pen's projection on one plane: tangents add up.
   const auto slope = [&](double tilt) {
-    return std::isfinite(tilt) ? std::tan(std::clamp(tilt, -frame.max_tilt, frame.max_tilt)) : 0.0;
+    return std::isfinite(tilt) ? base::tan(std::clamp(tilt, -frame.max_tilt, frame.max_tilt)) : 0.0;
   };
   Vec2 lean(slope(tilt_x), slope(tilt_y));
-  const double most = std::tan(frame.max_tilt), length = glm::length(lean);
+  const double most = base::tan(frame.max_tilt), length = glm::length(lean);
   if (length > most) lean *= most / length;
   return glm::normalize(upright + lean.x * frame.right + lean.y * frame.up);
 }

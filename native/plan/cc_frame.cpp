@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 
 namespace riffler::plan {
@@ -46,15 +47,15 @@ CcFrame cc_frame(const Vec3& feed, const Vec3& normal) {
 }
 
 Vec3 axis_of(const CcFrame& frame, const Lean& lean) {
-  const double flat = std::cos(lean.tilt);
-  return glm::normalize(flat * std::sin(lean.inclination) * frame.x + std::sin(lean.tilt) * frame.y +
-                        flat * std::cos(lean.inclination) * frame.z);
+  const double flat = base::cos(lean.tilt);
+  return glm::normalize(flat * base::sin(lean.inclination) * frame.x + base::sin(lean.tilt) * frame.y +
+                        flat * base::cos(lean.inclination) * frame.z);
 }
 
 Lean lean_of(const CcFrame& frame, const Vec3& axis) {
   const double x = glm::dot(axis, frame.x), y = glm::dot(axis, frame.y), z = glm::dot(axis, frame.z);
   const double flat = geom::hypot(x, z);
-  return {flat > 1e-15 ? std::atan2(x, z) : 0.0, std::atan2(y, flat)};
+  return {flat > 1e-15 ? base::atan2(x, z) : 0.0, base::atan2(y, flat)};
 }
 
 Vec3 feed_at(const PencilPath& path, std::size_t k) {

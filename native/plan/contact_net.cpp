@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/functions.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {
@@ -81,7 +82,7 @@ struct Triangle {
 ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing, double depth, double angle,
                        const Progress& progress) {
   const std::size_t n = part.triangles.size(), chunks = (n + kGrain - 1) / kGrain;
-  const double cosine = std::cos(0.99 * angle);
+  const double cosine = base::cos(0.99 * angle);
   ContactNet net;
   std::vector<std::vector<Unreached>> points(chunks);
   std::vector<std::size_t> balls(chunks, 0);

@@ -1,9 +1,9 @@
 // Arcs that lead the tool tangentially into a cut, or, reversed, out of it.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
+#include "base/functions.hpp"
 #include "riffler/geom/vec.hpp"
 
 namespace riffler::plan {
@@ -18,7 +18,7 @@ inline std::vector<Vec3> lead_arc(const Vec3& p, const Vec3& along, const Vec3& 
   std::vector<Vec3> out;
   for (int k = kArcMoves; k >= 1; --k) {
     const double angle = turn * k / kArcMoves;
-    out.push_back(p + radius * ((1 - std::cos(angle)) * aside - std::sin(angle) * along));
+    out.push_back(p + radius * ((1 - base::cos(angle)) * aside - base::sin(angle) * along));
   }
   return out;
 }

@@ -1,11 +1,11 @@
 #include "riffler/plan/least_tilt.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "riffler/base/check.hpp"
 
@@ -54,7 +54,7 @@ class Chain {
   }
   LayerCosts next(const LayerCosts& before, std::size_t k) const {
     const Layer &a = layer(k - 1), &b = layer(k);
-    const double least = std::cos(std::min(rule_.max_change, 3.2)) - 1e-12;
+    const double least = base::cos(std::min(rule_.max_change, 3.2)) - 1e-12;
     LayerCosts out{std::vector<double>(b.axes.size(), kNever), std::vector<std::size_t>(b.axes.size(), 0)};
     for (std::size_t j = 0; j < b.axes.size(); ++j) {
       for (std::size_t i = 0; i < a.axes.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
@@ -60,12 +61,12 @@ double LowerSide::best_on_line(double d, double slope) const {
   // inside.
   const double inner = std::max(flat_, d), shortest = std::sqrt(std::max(0.0, (inner - d) * (inner + d)));
   if (slope == 0) return shortest;
-  const auto angle = [&](double rho) { return std::asin(std::clamp((rho - centre_.x) / arc_, -1.0, 1.0)); };
+  const auto angle = [&](double rho) { return base::asin(std::clamp((rho - centre_.x) / arc_, -1.0, 1.0)); };
   double low = angle(inner), high = angle(rim_);
-  double phi = shortest > 0 ? std::atan(slope * inner / shortest) : 0.5 * (low + high);
+  double phi = shortest > 0 ? base::atan(slope * inner / shortest) : 0.5 * (low + high);
   if (!(phi > low && phi < high)) phi = 0.5 * (low + high);
   for (int n = 0; n < 100 && high - low > kAngle; ++n) {
-    const double s = std::sin(phi), c = std::cos(phi), rho = centre_.x + arc_ * s;
+    const double s = base::sin(phi), c = base::cos(phi), rho = centre_.x + arc_ * s;
     const double u = std::sqrt(std::max(0.0, (rho - d) * (rho + d))), off = s * u - slope * rho * c;
     (off > 0 ? high : low) = phi;
     if (off == 0) break;
@@ -79,7 +80,7 @@ double LowerSide::best_on_line(double d, double slope) const {
     phi = next;
     if (done) break;
   }
-  const double rho = centre_.x + arc_ * std::sin(phi);
+  const double rho = centre_.x + arc_ * base::sin(phi);
   return std::min(most, std::sqrt(std::max(0.0, (rho - d) * (rho + d))));
 }
 

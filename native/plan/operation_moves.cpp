@@ -1,9 +1,9 @@
 #include "plan/operation_moves.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/marching/to_mesh.hpp"
 #include "riffler/mesh/orient.hpp"
@@ -35,7 +35,7 @@ double top_of(const SetupScene& scene, const TurnedScene& in) {
 Mat3 operation_frame(const Vec3& axis, double angle) {
   const Vec3 z = unit_axis(axis, "axis");
   const CcFrame base = z == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, z);
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = base::cos(angle), s = base::sin(angle);
   return Mat3(c * base.x + s * base.y, c * base.y - s * base.x, base.z);
 }
 

@@ -1,9 +1,9 @@
 #include "riffler/plan/orientation.hpp"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "plan/smooth_axes.hpp"
@@ -123,7 +123,7 @@ const char* name_of(Interpolation rule) {
 Vec3 project(const AxisLimit& limit, const Vec3& axis) {
   if (geom::angle_between(axis, limit.about) <= limit.angle) return axis;
   // For an axis opposite to the cone, all paths onto it are equally short: cc_frame always picks the same.
-  return glm::normalize(std::cos(limit.angle) * limit.about + std::sin(limit.angle) * cc_frame(axis, limit.about).x);
+  return glm::normalize(base::cos(limit.angle) * limit.about + base::sin(limit.angle) * cc_frame(axis, limit.about).x);
 }
 
 PencilPath oriented(const PencilPath& path, const OrientationKeys& keys, Interpolation rule,

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "plan/passes.hpp"
 #include "plan/valley_index.hpp"
 #include "plan/valley_starts.hpp"
@@ -341,7 +342,7 @@ void set_direction(Valley& valley, double same) {
 }  // namespace
 
 double bitangency_angle_of_gap(double radius, double gap) {
-  return 2 * std::acos(radius / (radius + gap));
+  return 2 * base::acos(radius / (radius + gap));
 }
 
 double tip_ball_radius(const Tool& tool, std::string_view name) {

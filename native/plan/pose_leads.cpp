@@ -1,8 +1,8 @@
 #include "plan/pose_leads.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "plan/operation_moves.hpp"
 #include "riffler/plan/cc_frame.hpp"
@@ -27,7 +27,7 @@ std::vector<Vec3> directions(const Vec3& axis, const Vec3& up) {
   const CcFrame frame = cc_frame(up, axis);
   for (int k = 0; k < kSides; ++k) {
     const double turn = geom::kTwoPi * k / kSides;
-    out.push_back(std::cos(kLean) * axis + std::sin(kLean) * (std::cos(turn) * frame.x + std::sin(turn) * frame.y));
+    out.push_back(base::cos(kLean) * axis + base::sin(kLean) * (base::cos(turn) * frame.x + base::sin(turn) * frame.y));
   }
   return out;
 }
@@ -69,7 +69,7 @@ std::optional<std::pair<Tool, double>> body_of(const Tool& tool) {
 double depth_below_tip(const Tool& tool, double tilt) {
   double depth = 0;
   const auto ring = [&](double radius, double height) {
-    depth = std::max(depth, radius * std::sin(tilt) - height * std::cos(tilt));
+    depth = std::max(depth, radius * base::sin(tilt) - height * base::cos(tilt));
   };
   Vec2 from{0, 0};
   for (const tool::ProfileSegment& s : tool.profile().segments())  // boxes around the segments

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "plan/half_spaces.hpp"
 #include "riffler/mesh/smooth.hpp"
@@ -153,7 +154,7 @@ namespace {
 
 /// Whether `u` lies between those directions of `normals` that differ by less than kFeatureAngle.
 bool between(const Vec3& u, const std::vector<Vec3>& normals) {
-  const double mild = std::cos(mesh::kFeatureAngle);
+  const double mild = base::cos(mesh::kFeatureAngle);
   const std::size_t n = normals.size();
   const auto side = [&](const Vec3& a, const Vec3& b) {  // sine of the angle of u to the left of the arc from a to b
     const Vec3 c = glm::cross(a, b);
@@ -190,7 +191,7 @@ std::optional<Vec3> RollingBall::faced(const Foot& foot) const {
   std::vector<Vec3> normals;
   for (const mesh::Closest::Hit& hit : hits) {
     const Vec3& n = normals_[hit.triangle];
-    if (glm::dot(n, foot.away) < std::cos(mesh::kFeatureAngle)) continue;
+    if (glm::dot(n, foot.away) < base::cos(mesh::kFeatureAngle)) continue;
     if (std::none_of(normals.begin(), normals.end(), [&](const Vec3& m) { return glm::length(m - n) < 1e-9; }))
       normals.push_back(n);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "riffler/geom/pose.hpp"
 
@@ -27,7 +28,7 @@ Vec3 capped(const Vec3& v, double most) {
 
 Vec3 along_great_circle(const Vec3& a, const Vec3& v, double u) {
   const double rate = glm::length(v), angle = rate * u;
-  return rate > 0 ? std::cos(angle) * a + std::sin(angle) * (v / rate) : a;
+  return rate > 0 ? base::cos(angle) * a + base::sin(angle) * (v / rate) : a;
 }
 
 Vec3 velocity_between(const Vec3& a, const Vec3& b) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "mesh/closest.hpp"
 #include "riffler/base/check.hpp"
@@ -68,8 +69,8 @@ class Wall {
     const double height = extent(centre, up);
     if (!(height > 0)) return {up, 0, kInfinity, kInfinity};
     const auto fit = [&](double lean) {
-      const Vec3 way = std::cos(lean) * up + std::sin(lean) * frame.x;
-      return this->fit(centre, way, height / std::cos(lean), lean);
+      const Vec3 way = base::cos(lean) * up + base::sin(lean) * frame.x;
+      return this->fit(centre, way, height / base::cos(lean), lean);
     };
     double at = 0;
     Fit best = fit(0);

@@ -1,8 +1,8 @@
 #include "plan/valley.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "base/functions.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {
@@ -15,7 +15,7 @@ constexpr double kOpposite = 1e-3;    // sine of the angle between the sides bel
 constexpr std::size_t kMaxStations = 100000;
 
 double chord_angle(const Vec3& a, const Vec3& b) {
-  return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
+  return 2 * base::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
 /// Unit vector along the valley; for sign = 1, side 0 is on the left, seen along side 1's normal.

@@ -1,7 +1,8 @@
 #include "plan/valley_index.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/functions.hpp"
 
 namespace riffler::plan {
 
@@ -22,7 +23,7 @@ bool ValleyIndex::on(const Station& s, const Segment& segment) const {
   const double length2 = glm::dot(ab, ab);
   const double t = length2 > 0 ? std::clamp(glm::dot(s.centre - segment.a.centre, ab) / length2, 0.0, 1.0) : 0;
   if (glm::length(s.centre - segment.a.centre - t * ab) > near_) return false;
-  const double chord = 2 * std::sin(0.5 * turn_);
+  const double chord = 2 * base::sin(0.5 * turn_);
   const auto same = [&](int side, int other) {
     return std::min(glm::length(s.feet[side].away - segment.a.feet[other].away),
                     glm::length(s.feet[side].away - segment.b.feet[other].away)) < chord;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/median_tree.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
@@ -26,7 +27,7 @@ constexpr std::size_t kPointsAtOnce = 256;
 Box3 swept_box(const SearchedMove& move, const Motion& motion, const Tool& tool) {
   Box3 box;
   for (const Pose& pose : {move.from, move.to}) box.add(pose.tip), box.add(pose.tip + tool.length() * pose.axis);
-  const double margin = 0.5 * tool.diameter() + tool.length() * (1 - std::cos(0.5 * motion.angle()));
+  const double margin = 0.5 * tool.diameter() + tool.length() * (1 - base::cos(0.5 * motion.angle()));
   box.lower -= Vec3(margin), box.upper += Vec3(margin);
   return box;
 }

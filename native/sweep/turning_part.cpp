@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 
 namespace riffler::sweep {
@@ -76,7 +77,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   // tolerance along the ray. A plane may lag behind by only a small fraction of the body's size (docs/methods.md).
   along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);
   const double moved = (speed + angle * lever) * (t1 - t0);
-  deepest = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside, 1.0)))), 1, 40);
+  deepest = std::clamp(static_cast<int>(std::ceil(base::log2(std::max(moved / aside, 1.0)))), 1, 40);
 }
 
 }  // namespace riffler::sweep

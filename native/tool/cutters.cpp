@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 
@@ -119,11 +120,11 @@ Sizes fillet_from_apt(const AptCutter& apt) {
 
 Profile taper_profile(double tip_radius, double half_angle, double diameter, double length, bool flat_tip) {
   const double r = diameter / 2, t = tip_radius;
-  const Vec2 start = flat_tip ? Vec2(t, 0) : t * Vec2(std::cos(half_angle), 1 - std::sin(half_angle));
+  const Vec2 start = flat_tip ? Vec2(t, 0) : t * Vec2(base::cos(half_angle), 1 - base::sin(half_angle));
   if (start.x > r) throw std::invalid_argument("tip_radius is too large for the diameter");
   std::vector<ProfileSegment> segments;
   if (t > 0) segments.push_back(flat_tip ? line(t, 0) : arc(start.x, start.y, 0, t));
-  if (r > start.x) segments.push_back(line(r, start.y + (r - start.x) / std::tan(half_angle)));
+  if (r > start.x) segments.push_back(line(r, start.y + (r - start.x) / base::tan(half_angle)));
   return up_to(std::move(segments), length);
 }
 AptCutter taper_to_apt(double tip_radius, double half_angle, double /*diameter*/, double length, bool /*flat_tip*/) {
@@ -132,15 +133,15 @@ AptCutter taper_to_apt(double tip_radius, double half_angle, double /*diameter*/
 /// The cone continues from the end of the ball to the top.
 Sizes taper_from_apt(const AptCutter& apt) {
   if (!(has_plain_corner(apt) && has_ball(apt) && apt.b > 0)) return std::nullopt;
-  const double top = 2 * (apt.r * std::cos(apt.b) + (apt.h - apt.r * (1 - std::sin(apt.b))) * std::tan(apt.b));
+  const double top = 2 * (apt.r * base::cos(apt.b) + (apt.h - apt.r * (1 - base::sin(apt.b))) * base::tan(apt.b));
   return Sizes({apt.r, apt.b, top, apt.h, 0});
 }
 
 Profile cone_end_profile(double tip_half_angle, double tip_height, double half_angle, double diameter, double length) {
-  const double r = diameter / 2, shoulder = tip_height * std::tan(tip_half_angle);
+  const double r = diameter / 2, shoulder = tip_height * base::tan(tip_half_angle);
   if (shoulder > r) throw std::invalid_argument("tip_height: the first cone is wider there than the diameter");
   std::vector<ProfileSegment> segments{line(shoulder, tip_height)};
-  if (r > shoulder) segments.push_back(line(r, tip_height + (r - shoulder) / std::tan(half_angle)));
+  if (r > shoulder) segments.push_back(line(r, tip_height + (r - shoulder) / base::tan(half_angle)));
   return up_to(std::move(segments), length);
 }
 

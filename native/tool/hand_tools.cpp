@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 
@@ -61,8 +62,8 @@ Tool chisel(double width, double thickness, double bevel, double length, double 
   sizes.emplace_back("skew", skew);
   const double half = width / 2;
   return one("chisel", std::move(sizes),
-             prism({{0, -half}, {0, half}, {thickness, half}, {thickness, -half}}, 1 / std::tan(bevel), std::tan(skew),
-                   length));
+             prism({{0, -half}, {0, half}, {thickness, half}, {thickness, -half}}, 1 / base::tan(bevel),
+                   base::tan(skew), length));
 }
 
 Tool gouge(double width, double radius, double bevel, double length) {
@@ -70,15 +71,15 @@ Tool gouge(double width, double radius, double bevel, double length) {
   check_sizes(sizes);
   check_angle(bevel, kPi / 2, "bevel", "a right angle (rad)");
   if (!(width <= 2 * radius)) throw std::invalid_argument("width must not be more than twice the radius");
-  const double half = std::asin(std::min(1.0, width / (2 * radius)));
-  const double widest = 2 * std::acos(std::max(0.0, 1 - kArcTolerance / radius));
+  const double half = base::asin(std::min(1.0, width / (2 * radius)));
+  const double widest = 2 * base::acos(std::max(0.0, 1 - kArcTolerance / radius));
   const int sides = std::clamp(static_cast<int>(std::ceil(2 * half / widest)), 2, kArcSides);
   std::vector<Vec2> section;
   for (int k = 0; k <= sides; ++k) {
-    const double a = half * (2.0 * k / sides - 1), s = std::sin(a / 2);
-    section.push_back({2 * radius * s * s, radius * std::sin(a)});
+    const double a = half * (2.0 * k / sides - 1), s = base::sin(a / 2);
+    section.push_back({2 * radius * s * s, radius * base::sin(a)});
   }
-  return one("gouge", std::move(sizes), prism(section, 1 / std::tan(bevel), 0, length));
+  return one("gouge", std::move(sizes), prism(section, 1 / base::tan(bevel), 0, length));
 }
 
 Tool v_tool(double angle, double width, double bevel, double length) {
@@ -86,16 +87,16 @@ Tool v_tool(double angle, double width, double bevel, double length) {
   check_sizes(sizes);
   check_angle(angle, kPi, "angle", "a half turn (rad)");
   check_angle(bevel, kPi / 2, "bevel", "a right angle (rad)");
-  const double half = width / 2, depth = half / std::tan(angle / 2);
+  const double half = width / 2, depth = half / base::tan(angle / 2);
   return one("v_tool", std::move(sizes),
-             prism({{0, 0}, {depth, half}, {depth, -half}}, 1 / std::tan(bevel), 0, length));
+             prism({{0, 0}, {depth, half}, {depth, -half}}, 1 / base::tan(bevel), 0, length));
 }
 
 Tool knife(double width, double thickness, double edge_angle, double length) {
   Sizes sizes{{"width", width}, {"thickness", thickness}, {"edge_angle", edge_angle}, {"length", length}};
   check_sizes(sizes);
   check_angle(edge_angle, kPi, "edge_angle", "a half turn (rad)");
-  const double half = thickness / 2, ground = half / std::tan(edge_angle / 2);
+  const double half = thickness / 2, ground = half / base::tan(edge_angle / 2);
   if (!(ground < width))
     throw std::invalid_argument("width must be more than the ground sides need: " + std::to_string(ground) +
                                 " mm; make it wider, or the edge angle");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/functions.hpp"
 #include "base/sort_unique.hpp"
 
 namespace riffler::tool {
@@ -187,11 +188,11 @@ std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance) {
   if (edge.centre) {
     // from the sagitta r (1 − cos(turn / 2)) of a chord
     const Vec2 a = edge.from - *edge.centre, b = edge.to - *edge.centre;
-    const double r = std::abs(edge.bulge), turn = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
-    const double most = 4 * std::asin(std::sqrt(std::min(0.5, tolerance / (2 * r))));
+    const double r = std::abs(edge.bulge), turn = base::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+    const double most = 4 * base::asin(std::sqrt(std::min(0.5, tolerance / (2 * r))));
     const int steps = static_cast<int>(std::min(1e4, std::ceil(std::abs(turn) / most)));
     for (int k = 1; k < steps; ++k) {
-      const double c = std::cos(turn * k / steps), s = std::sin(turn * k / steps);
+      const double c = base::cos(turn * k / steps), s = base::sin(turn * k / steps);
       out.push_back(*edge.centre + Vec2(a.x * c - a.y * s, a.x * s + a.y * c));
     }
   }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 
 namespace riffler::tool {
@@ -34,16 +35,16 @@ void check_arc(std::size_t i, const Vec2& from, const Vec2& to, const Vec2& cent
 /// cones cut nothing that the arc would leave.
 void add_hollow(const Vec2& from, const Vec2& to, const Vec2& centre, std::vector<Piece>& out) {
   const double r = glm::length(from - centre);
-  const double start = std::atan2(from.y - centre.y, from.x - centre.x);
-  const double turn = std::remainder(std::atan2(to.y - centre.y, to.x - centre.x) - start, 2 * std::acos(-1.0));
-  const double widest = 2 * std::acos(r / (r + Profile::kConcaveTolerance));
+  const double start = base::atan2(from.y - centre.y, from.x - centre.x);
+  const double turn = std::remainder(base::atan2(to.y - centre.y, to.x - centre.x) - start, 2 * base::acos(-1.0));
+  const double widest = 2 * base::acos(r / (r + Profile::kConcaveTolerance));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / widest)));
-  const double half = turn / n / 2, far = r / std::cos(half);
+  const double half = turn / n / 2, far = r / base::cos(half);
   const double thinnest = 1e-9 * r;  // rounding may leave such a thin remainder of a level tangent
   Vec2 last = from;
   for (int k = 0; k <= n; ++k) {
     const double angle = start + (2 * k + 1) * half;
-    Vec2 next = k == n ? to : centre + far * Vec2(std::cos(angle), std::sin(angle));
+    Vec2 next = k == n ? to : centre + far * Vec2(base::cos(angle), base::sin(angle));
     next = {std::max(next.x, 0.0), std::clamp(next.y, last.y, to.y)};
     if (to.y - next.y <= thinnest) next.y = to.y;
     if (next.y - last.y <= thinnest) next.y = last.y;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 
 namespace riffler::verify {
@@ -66,7 +67,7 @@ Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
   // Every point of the tool stays within lever φ² / 8 of the straight line between its two places, because its
   // acceleration relative to the tip is at most lever φ².
   const double chord = glm::length(to.axis - from.axis);
-  const double angle = 2 * std::asin(std::min(1.0, chord / 2)),
+  const double angle = 2 * base::asin(std::min(1.0, chord / 2)),
                lever = geom::hypot(std::max(std::abs(low), std::abs(end)), radius);
   return box.grown(lever * angle * angle / 8 + 1e-9 * (1 + lever));
 }

@@ -31,10 +31,12 @@ def test_a_topic_below_is_refused(tree):
 
 def test_a_function_whose_bits_differ_between_systems_is_refused_in_the_core(tree):
     tree("base/a.cpp", "const double d = std::hypot(x, y);\n")
-    tree("nc/b.cpp", "const double d = geom::hypot(x, y);\n")
+    tree("nc/b.cpp", "const double d = geom::hypot(x, y) + base::sin(x) + std::sqrt(y);\n")
+    tree("nc/c.cpp", "const double d = std::atan2(x, y);\n")
     tree("tests/nc/b_test.cpp", "const double d = std::hypot(x, y);\n")
     assert check_layers.bit_problems(tree.root) == [
-        "native/base/a.cpp:1: std::hypot differs between systems: use geom::hypot"
+        "native/base/a.cpp:1: std::hypot differs between systems: use geom::hypot",
+        "native/nc/c.cpp:1: std::atan2 differs between systems: use base::atan2",
     ]
 
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::dexel {
@@ -94,7 +95,7 @@ BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
   double norm = 0;
   for (int k = 0; k < 3; ++k) norm += glm::dot(moment[k], moment[k]);
   // The error has a quadrupole and second moments, which fall with the third and fourth power of the distance.
-  out.far_enough = std::max({2 * out.radius, std::cbrt(3 * std::sqrt(norm) / (4 * kPi * kLeftOut)),
+  out.far_enough = std::max({2 * out.radius, base::pow(3 * std::sqrt(norm) / (4 * kPi * kLeftOut), 1.0 / 3),
                              std::sqrt(std::sqrt(3 * out.area * out.radius * out.radius / (4 * kPi * kLeftOut)))});
   return out;
 }
@@ -156,7 +157,7 @@ void Descent::enter(const Surroundings& parent, const Vec3& centre, double radiu
   }
   add_chain(begin, end);
   flush(edges_), flush(dipoles_);
-  const double k = out.far.constant() + surfaces_ + std::atan2(im_, re_) / (2 * kPi);
+  const double k = out.far.constant() + surfaces_ + base::atan2(im_, re_) / (2 * kPi);
   out.far.set_constant(k - std::round(k));
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "dexel/from_mesh/crossing_lanes.hpp"
 #include "dexel/from_mesh/crossings.hpp"
 #include "dexel/from_mesh/flatness.hpp"
@@ -415,7 +416,7 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
     result = Volume(frame);
     fill(result, solid.mesh(), solid.loops(), base::part(progress, 0.999, 1), report ? &findings : nullptr);
   }
-  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
+  if (!(most_volume(result) > 1e-6 * base::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
   if (report) conclude(solid, findings, inside_out, *report);
   if (missed) *missed = {};

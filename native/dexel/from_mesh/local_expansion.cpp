@@ -34,7 +34,11 @@ struct Harmonic {
 
 std::array<Harmonic, SourceSum::kTerms> harmonics() {
   std::array<Harmonic, SourceSum::kTerms> all{};
-  const auto factorial = [](int n) { return std::tgamma(n + 1.0); };
+  const auto factorial = [](int n) {
+    double out = 1;
+    for (int k = 2; k <= n; ++k) out *= k;
+    return out;
+  };
   for (int n = 1; n <= kExpansionDegree; ++n)
     for (int m = 0; m <= n; ++m) {
       const int k = (n - m) / 2, degree = n - (n - m) % 2;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "dexel/from_mesh/boundary_field.hpp"
 #include "dexel/from_mesh/opening_search.hpp"
 #include "geom/math.hpp"
@@ -145,7 +146,7 @@ double boundary_winding(const std::vector<std::vector<int>>& loops, const Projec
         const bool left = column >= projection.column(low, high, row, v);
         im = left == up ? std::abs(im) : -std::abs(im);
       }
-      sum += std::atan2(im, re);
+      sum += base::atan2(im, re);
     }
   return sum / (2 * kPi);
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
@@ -63,7 +64,7 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
   for (std::size_t k = 0; k < description_.ranges.size(); ++k) {
     AxisRange& range = description_.ranges[k];
     // A printed value must be within the limits too, so round them inwards.
-    const double scale = std::pow(10.0, k >= 3 ? kAngleDecimals : kLengthDecimals);
+    const double scale = base::pow(10.0, k >= 3 ? kAngleDecimals : kLengthDecimals);
     range.low = std::ceil(range.low * scale - 1e-3) / scale + 0.0;  // no -0
     range.high = std::floor(range.high * scale + 1e-3) / scale + 0.0;
     if (!(range.low < range.high)) refuse(std::string("the limits of ") + kJointLetters[k] + " must grow");
@@ -135,7 +136,7 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
     if (std::abs(glm::dot(k, axis) - glm::dot(k, kSpindle)) > kSingle) cannot_reach();
     return {pole() != Vec3(0) ? near[0] : angle_about(k, kSpindle, axis), 0};
   }
-  if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
+  if (base::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
     // The free axis stays; the other one takes the axis as far as possible in the plane that results.
     const Turns out{near[0], angle_about(two_.second, kSpindle, geom::rotate_about(axis, two_.first, -near[0]))};
     // A pole may be out of reach for every angle of the other axis.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
+
 namespace riffler::nc {
 
 double angle_about(const Vec3& k, const Vec3& from, const Vec3& to) {
   const Vec3 side = glm::cross(k, from);
-  return std::atan2(glm::dot(side, to), glm::dot(glm::cross(side, k), to));
+  return base::atan2(glm::dot(side, to), glm::dot(glm::cross(side, k), to));
 }
 
 std::optional<TwoRotations::Angles> TwoRotations::angles(const Vec3& from, const Vec3& to, int branch) const {

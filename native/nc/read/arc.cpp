@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 
@@ -22,9 +23,9 @@ namespace {
 /// An arc about `centre` between the circles through the two ends.
 Arc between(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise) {
   const Vec2 a = from - centre, b = to - centre;
-  const double start = std::atan2(a.y, a.x);
+  const double start = base::atan2(a.y, a.x);
   // Angle from a to b in the direction of travel, (0, 2 π].
-  double sweep = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+  double sweep = base::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
   if (clockwise) sweep = -sweep;
   if (glm::length(to - from) < kFullCircle)
     sweep = kTwoPi;
@@ -43,7 +44,7 @@ Arc Arc::with_turns(int turns) const {
 
 Vec2 Arc::at(double t) const {
   const double r = r0 + t * (r1 - r0), angle = start + t * sweep;
-  return centre + r * Vec2(std::cos(angle), std::sin(angle));
+  return centre + r * Vec2(base::cos(angle), base::sin(angle));
 }
 
 double Arc::length() const {
@@ -54,7 +55,7 @@ int Arc::chords(double tolerance) const {
   // Sagitta r (1 − cos h) = 2 r sin²(h / 2) of a chord over the angle 2 h; at most half a right angle, so that small
   // circles keep their shape.
   const double r = std::max(r0, r1);
-  const double half = 2 * std::asin(std::min(1.0, std::sqrt(tolerance / (2 * r))));
+  const double half = 2 * base::asin(std::min(1.0, std::sqrt(tolerance / (2 * r))));
   const double step = std::min(2 * half, kPi / 4);
   return std::max(1, static_cast<int>(std::min(1e9, std::ceil(std::abs(sweep) / step))));
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
@@ -36,7 +37,7 @@ double cross_of(const Vec2& a, const Vec2& b) {
 }
 
 double angle_of(const Vec2& d) {
-  return std::atan2(d.y, d.x);
+  return base::atan2(d.y, d.x);
 }
 
 /// `angle` in [`low`, `low` + 2 π).
@@ -138,7 +139,7 @@ CutterCompensation::Element CutterCompensation::arc_element(const Joints& to, co
   out.to = to, out.words = words;
   out.corner = {to[offset_.u], to[offset_.v]};
   const double sense = sense_of(arc), begin = arc.start, end = arc.start + arc.sweep;
-  const Vec2 out_first(std::cos(begin), std::sin(begin)), out_last(std::cos(end), std::sin(end));
+  const Vec2 out_first(base::cos(begin), base::sin(begin)), out_last(base::cos(end), base::sin(end));
   out.start_tangent = sense * left_of(out_first), out.end_tangent = sense * left_of(out_last);
   out.start_curvature = sense / arc.r0, out.end_curvature = sense / arc.r1;
   // An arc that curves towards the tool has the tool inside.
@@ -196,8 +197,8 @@ void CutterCompensation::append(Element next) {
 
 /// Rotation from one element to the next, rad; > 0 towards the tool: an inside corner.
 double CutterCompensation::turn(const Element& before, const Element& next) const {
-  const double turn = side() * std::atan2(cross_of(before.end_tangent, next.start_tangent),
-                                          glm::dot(before.end_tangent, next.start_tangent));
+  const double turn = side() * base::atan2(cross_of(before.end_tangent, next.start_tangent),
+                                           glm::dot(before.end_tangent, next.start_tangent));
   if (std::abs(turn) < kPi - kReversal) return turn;
   // The next element reverses: it curves to the tool's side of the one before, or away from it.
   return side() * (before.end_curvature + next.start_curvature) < -1e-9 ? kPi : -kPi;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::nc {
@@ -137,7 +138,7 @@ class Evaluator {
     switch (op) {
       case Operator::Power:
         if (a < 0 && b != std::floor(b)) cursor_.fail("a negative number to a power that is not whole");
-        return std::pow(a, b);
+        return base::pow(a, b);
       case Operator::Times:
         return a * b;
       case Operator::Over:
@@ -199,7 +200,7 @@ class Evaluator {
   double arc_tangent() {
     const double y = bracket();
     if (!cursor_.take_if('/') || !cursor_.take_if('[')) cursor_.fail("ATAN takes two values: ATAN[y]/[x]");
-    return std::atan2(y, bracket()) / kDegree;
+    return base::atan2(y, bracket()) / kDegree;
   }
 
   double of(std::string_view name, double x) {
@@ -207,17 +208,17 @@ class Evaluator {
       if (!good) cursor_.fail(std::string(name) + " of a number for which it has no value");
     };
     if (name == "ABS") return std::abs(x);
-    if (name == "ACOS") return need(std::abs(x) <= 1), std::acos(x) / kDegree;
-    if (name == "ASIN") return need(std::abs(x) <= 1), std::asin(x) / kDegree;
-    if (name == "COS") return std::cos(x * kDegree);
-    if (name == "EXP") return std::exp(x);
+    if (name == "ACOS") return need(std::abs(x) <= 1), base::acos(x) / kDegree;
+    if (name == "ASIN") return need(std::abs(x) <= 1), base::asin(x) / kDegree;
+    if (name == "COS") return base::cos(x * kDegree);
+    if (name == "EXP") return base::exp(x);
     if (name == "FIX") return std::floor(x);
     if (name == "FUP") return std::ceil(x);
-    if (name == "LN") return need(x > 0), std::log(x);
+    if (name == "LN") return need(x > 0), base::log(x);
     if (name == "ROUND") return std::round(x);
-    if (name == "SIN") return std::sin(x * kDegree);
+    if (name == "SIN") return base::sin(x * kDegree);
     if (name == "SQRT") return need(x >= 0), std::sqrt(x);
-    return std::tan(x * kDegree);
+    return base::tan(x * kDegree);
   }
 
   NcCursor& cursor_;

@@ -1,14 +1,13 @@
 #include "nc/read/frame.hpp"
 
-#include <cmath>
-
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::nc {
 
 Vec2 turned_in_plane(const Vec2& v, double degrees) {
   if (degrees == 0) return v;
-  const double angle = degrees * kDegree, c = std::cos(angle), s = std::sin(angle);
+  const double angle = degrees * kDegree, c = base::cos(angle), s = base::sin(angle);
   return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 

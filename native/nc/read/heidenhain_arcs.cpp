@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
@@ -100,11 +101,11 @@ Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
     place_.fail("polar coordinates together with those of their plane");
   const Vec2 from(at_[u] - at.at[u], at_[v] - at.at[v]);
   const double radius = words.radius.from(glm::length(from), unit_);
-  const double angle = words.angle.from(std::atan2(from.y, from.x) / kDegree, 1);
+  const double angle = words.angle.from(base::atan2(from.y, from.x) / kDegree, 1);
   if (!(radius >= 0)) place_.fail("PR is negative");
   if (!(std::abs(angle) <= kMaxAngle)) place_.fail("PA is out of range");
   Vec3 to = linear_target(words);
-  to[u] = at.at[u] + radius * std::cos(angle * kDegree), to[v] = at.at[v] + radius * std::sin(angle * kDegree);
+  to[u] = at.at[u] + radius * base::cos(angle * kDegree), to[v] = at.at[v] + radius * base::sin(angle * kDegree);
   check_length(to);
   return to;
 }
@@ -119,7 +120,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("CP together with coordinates of its plane");
   if (!words.angle.given) place_.fail("CP without PA or IPA");
   const Vec2 centre(at.at[u], at.at[v]), from = Vec2(at_[u], at_[v]) - centre;
-  const double radius = glm::length(from), start = std::atan2(from.y, from.x);
+  const double radius = glm::length(from), start = base::atan2(from.y, from.x);
   if (words.radius.given && !(std::abs(words.radius.from(radius, unit_) - radius) <= arc_miss_))
     place_.fail("CP with another radius than that of its start");
   if (!(radius >= kMinRadius)) place_.fail("an arc of radius 0");
@@ -134,7 +135,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   }
   Vec3 to = linear_target(words);
   const double end = words.angle.incremental ? start + sweep : words.angle.value * kDegree;
-  to[u] = centre.x + radius * std::cos(end), to[v] = centre.y + radius * std::sin(end);
+  to[u] = centre.x + radius * base::cos(end), to[v] = centre.y + radius * base::sin(end);
   if (std::abs(sweep) == kTwoPi) to[u] = at_[u], to[v] = at_[v];
   arc_to(to, {centre, radius, radius, start, sweep}, at.u, at.v, words);
 }
@@ -170,7 +171,7 @@ void HeidenhainInterpreter::arc_to(const Vec3& to, const Arc& arc, std::size_t u
   arc_rows(to, arc, u, v, rotary, row);
   const double end = arc.start + arc.sweep, sense = arc.sweep < 0 ? -1 : 1;
   leaving_ = Vec3(0);
-  (*leaving_)[static_cast<int>(u)] = -sense * std::sin(end), (*leaving_)[static_cast<int>(v)] = sense * std::cos(end);
+  (*leaving_)[static_cast<int>(u)] = -sense * base::sin(end), (*leaving_)[static_cast<int>(v)] = sense * base::cos(end);
   end_line(words);
 }
 
@@ -247,9 +248,9 @@ void HeidenhainInterpreter::cut_corner(const Vec3& to) {
   if (in.z != 0 || out.z != 0 || !(glm::length(in) > kOnLine && glm::length(out) > kOnLine))
     place_.fail("RND and CHF are read between two lines in the working plane");
   const Vec3 a = glm::normalize(in), b = glm::normalize(out);
-  const double turn = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b)), half = std::abs(turn) / 2;
+  const double turn = base::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b)), half = std::abs(turn) / 2;
   if (!(half < 0.49 * kPi)) place_.fail("RND or CHF where the second line goes back");
-  const double leg = corner.round ? *corner.size * std::tan(half) : *corner.size;
+  const double leg = corner.round ? *corner.size * base::tan(half) : *corner.size;
   if (!(leg <= glm::length(in) + 1e-6 && leg <= glm::length(out) + 1e-6))
     place_.fail("RND or CHF is larger than its lines");
   at_ = corner.from;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "nc/read/frame.hpp"
 
@@ -24,7 +25,7 @@ void sine_and_cosine(double degrees, double& sine, double& cosine) {
     return;
   }
   const double angle = degrees * kDegree;
-  sine = std::sin(angle), cosine = std::cos(angle);
+  sine = base::sin(angle), cosine = base::cos(angle);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
@@ -173,7 +174,7 @@ Joints HeidenhainInterpreter::plane_joints(const PlaneWords& words) const {
   const bool two = machine.branches() == 2;
   const bool at_pole = two && glm::length(glm::cross(machine.pole(), normal)) < kAtPole;
   if (at_pole && words.turns_table) {
-    const double angle = std::atan2(frame_.turn[0].y, frame_.turn[0].x) / kDegree;
+    const double angle = base::atan2(frame_.turn[0].y, frame_.turn[0].x) / kDegree;
     const std::size_t free = machine.free_joint();
     near[free] = nearest_turn(machine.pole().z < 0 ? -angle : angle, rotary_[free]);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/read/maybe.hpp"
@@ -23,15 +24,15 @@ struct QFunction {
 constexpr QFunction kQFunctions[] = {
     {"SQRT", [](double x) { return std::sqrt(x); }},
     {"SQ", [](double x) { return x * x; }},
-    {"ASIN", [](double x) { return std::asin(x) / kDegree; }},
-    {"ACOS", [](double x) { return std::acos(x) / kDegree; }},
-    {"ATAN", [](double x) { return std::atan(x) / kDegree; }},
-    {"SIN", [](double x) { return std::sin(x * kDegree); }},
-    {"COS", [](double x) { return std::cos(x * kDegree); }},
-    {"TAN", [](double x) { return std::tan(x * kDegree); }},
-    {"LN", [](double x) { return std::log(x); }},
-    {"LOG", [](double x) { return std::log10(x); }},
-    {"EXP", [](double x) { return std::exp(x); }},
+    {"ASIN", [](double x) { return base::asin(x) / kDegree; }},
+    {"ACOS", [](double x) { return base::acos(x) / kDegree; }},
+    {"ATAN", [](double x) { return base::atan(x) / kDegree; }},
+    {"SIN", [](double x) { return base::sin(x * kDegree); }},
+    {"COS", [](double x) { return base::cos(x * kDegree); }},
+    {"TAN", [](double x) { return base::tan(x * kDegree); }},
+    {"LN", [](double x) { return base::log(x); }},
+    {"LOG", [](double x) { return base::log10(x); }},
+    {"EXP", [](double x) { return base::exp(x); }},
     {"NEG", [](double x) { return -x; }},
     {"INT", [](double x) { return std::trunc(x); }},
     {"ABS", [](double x) { return std::abs(x); }},
@@ -133,7 +134,7 @@ std::optional<double> HeidenhainValues::product(HeidenhainCursor& cursor, int de
       value = both(value, power(cursor, depth), [](double a, double b) { return geom::hypot(a, b); });
     else if (cursor.take_word("ANG"))
       value = both(value, power(cursor, depth), [](double a, double b) {
-        const double angle = std::atan2(a, b) / kDegree;
+        const double angle = base::atan2(a, b) / kDegree;
         return angle < 0 ? angle + 360 : angle;
       });
     else
@@ -145,7 +146,7 @@ std::optional<double> HeidenhainValues::product(HeidenhainCursor& cursor, int de
 std::optional<double> HeidenhainValues::power(HeidenhainCursor& cursor, int depth) {
   std::optional<double> value = factor(cursor, depth);
   while (cursor.take_if('^')) {
-    value = both(value, factor(cursor, depth), [](double a, double b) { return std::pow(a, b); });
+    value = both(value, factor(cursor, depth), [](double a, double b) { return base::pow(a, b); });
     if (value) value = checked(*value);
   }
   return value;

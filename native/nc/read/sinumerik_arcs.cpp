@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
@@ -57,7 +58,7 @@ Arc SinumerikInterpreter::plane_arc(const SinumerikWords& words, const Vec2& fro
     place_.fail("an arc with AR takes an end or a centre, not both");
   if (centred) {
     const Vec2 centre = centre_of(words, from), arm = from - centre;
-    const double start = std::atan2(arm.y, arm.x), radius = glm::length(arm);
+    const double start = base::atan2(arm.y, arm.x), radius = glm::length(arm);
     if (!(radius >= kMinRadius)) place_.fail("an arc of radius 0");
     const Arc out{centre, radius, radius, start, clockwise ? -sweep : sweep};
     to[u] = out.at(1).x, to[v] = out.at(1).y;
@@ -65,7 +66,7 @@ Arc SinumerikInterpreter::plane_arc(const SinumerikWords& words, const Vec2& fro
   }
   const double chord = glm::length(end - from);
   if (!(chord >= kFullCircle)) place_.fail("an arc with AR that ends where it begins");
-  const double radius = chord / (2 * std::sin(sweep / 2));
+  const double radius = chord / (2 * base::sin(sweep / 2));
   return arc_of_radius(from, end, sweep > kPi ? -radius : radius, clockwise, arc_miss_);
 }
 
@@ -119,7 +120,7 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   at_ = to;
   const double end = arc.start + arc.sweep, sense = arc.sweep < 0 ? -1 : 1;
   leaving_ = Vec3(0);
-  (*leaving_)[u] = -sense * std::sin(end), (*leaving_)[v] = sense * std::cos(end);
+  (*leaving_)[u] = -sense * base::sin(end), (*leaving_)[v] = sense * base::cos(end);
 }
 
 /// CIP: from here through I1 J1 K1 to X Y Z, in any plane.
@@ -144,7 +145,7 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const double radius = glm::length(centre);
   if (!(radius <= kMaxLength)) place_.fail("CIP of a radius that is out of range");
   const Vec3 x = -centre / radius, y = glm::cross(glm::normalize(normal), x), end = b - centre;
-  double sweep = std::atan2(glm::dot(end, y), glm::dot(end, x));
+  double sweep = base::atan2(glm::dot(end, y), glm::dot(end, x));
   if (sweep <= 0) sweep += kTwoPi;
   const Arc arc{Vec2(0), radius, radius, 0, sweep};
   moves_in_part(row);
@@ -158,7 +159,7 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
       },
       row);
   at_ = to;
-  leaving_ = std::cos(sweep) * y - std::sin(sweep) * x;
+  leaving_ = base::cos(sweep) * y - base::sin(sweep) * x;
 }
 
 }  // namespace riffler::nc

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "base/functions.hpp"
+
 namespace riffler::nc {
 
 char SinumerikCursor::peek() {
@@ -66,7 +68,7 @@ double SinumerikCursor::number(std::string_view what) {
     if (rest_[0] == '+') rest_.remove_prefix(1);
     int exponent = 0;
     good = read(exponent) && good;
-    value *= std::pow(10.0, exponent);
+    value *= base::pow(10.0, exponent);
   }
   if (!good || !std::isfinite(value)) fail(std::string("the number of ") + std::string(what) + " is out of range");
   return value;

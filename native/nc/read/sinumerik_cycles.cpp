@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
@@ -112,7 +113,7 @@ void SinumerikInterpreter::holes(const std::string& word, const Arguments& given
   const int number = static_cast<int>(count);
   if (word == "HOLES1") {
     const double angle = of(2) * kDegree;
-    const Vec2 along(std::cos(angle), std::sin(angle));
+    const Vec2 along(base::cos(angle), base::sin(angle));
     const auto at = [&](int k) { return origin + unit_ * (of(3) + k * of(4)) * along; };
     const Vec2 here(at_[static_cast<int>(plane_[0])], at_[static_cast<int>(plane_[1])]);
     // Start from the nearer end.
@@ -124,7 +125,7 @@ void SinumerikInterpreter::holes(const std::string& word, const Arguments& given
   if (!(radius > 0)) place_.fail("RAD, the radius of HOLES2, must be positive");
   for (int k = 0; k < number; ++k) {
     const double angle = (of(3) + k * step) * kDegree;
-    hole_at(origin + radius * Vec2(std::cos(angle), std::sin(angle)));
+    hole_at(origin + radius * Vec2(base::cos(angle), base::sin(angle)));
   }
 }
 

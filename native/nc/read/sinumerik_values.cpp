@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/maybe.hpp"
@@ -22,19 +23,19 @@ struct Function {
   double (*of)(double);
 };
 constexpr Function kFunctions[] = {
-    {"SIN", [](double x) { return std::sin(x * kDegree); }},
-    {"COS", [](double x) { return std::cos(x * kDegree); }},
-    {"TAN", [](double x) { return std::tan(x * kDegree); }},
-    {"ASIN", [](double x) { return std::asin(x) / kDegree; }},
-    {"ACOS", [](double x) { return std::acos(x) / kDegree; }},
+    {"SIN", [](double x) { return base::sin(x * kDegree); }},
+    {"COS", [](double x) { return base::cos(x * kDegree); }},
+    {"TAN", [](double x) { return base::tan(x * kDegree); }},
+    {"ASIN", [](double x) { return base::asin(x) / kDegree; }},
+    {"ACOS", [](double x) { return base::acos(x) / kDegree; }},
     {"SQRT", [](double x) { return std::sqrt(x); }},
     {"POT", [](double x) { return x * x; }},
     {"ABS", [](double x) { return std::abs(x); }},
     {"TRUNC", [](double x) { return std::trunc(x); }},
     {"ROUND", [](double x) { return std::round(x); }},
     {"ROUNDUP", [](double x) { return x < 0 ? std::floor(x) : std::ceil(x); }},
-    {"LN", [](double x) { return std::log(x); }},
-    {"EXP", [](double x) { return std::exp(x); }},
+    {"LN", [](double x) { return base::log(x); }},
+    {"EXP", [](double x) { return base::exp(x); }},
 };
 
 /// "R5" → 5.
@@ -291,7 +292,7 @@ std::optional<double> SinumerikValues::function(const std::string& name, Sinumer
   if (!std::ranges::all_of(of, [](const auto& x) { return x.has_value(); })) return std::nullopt;
   if (count == 1) return checked(found->of(*of[0]));
   if (count == 3) return std::min(std::max(*of[0], *of[2]), *of[1]);
-  if (name == "ATAN2") return std::atan2(*of[0], *of[1]) / kDegree;
+  if (name == "ATAN2") return base::atan2(*of[0], *of[1]) / kDegree;
   return name == "MINVAL" ? std::min(*of[0], *of[1]) : std::max(*of[0], *of[1]);
 }
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
+
 namespace riffler::nc {
 
 namespace {
@@ -82,7 +84,7 @@ class Chord {
   Range limits() const {
     const auto of_radius = [&](double r) { return half_ / (r + std::sqrt((r - half_) * (r + half_))); };
     if (!(half_ > kSamePoint && half_ < kMaxArcRadius)) return {0, -1};
-    const double most = std::tan(kMaxArcSweep / 4);
+    const double most = base::tan(kMaxArcSweep / 4);
     return {of_radius(kMaxArcRadius), half_ < kMinArcRadius ? std::min(most, of_radius(kMinArcRadius)) : most};
   }
 
@@ -112,7 +114,7 @@ class Chord {
 
   PlaneArc arc(double x) const {
     const Vec2 left(-along_.y, along_.x);
-    const double height = half_ * (x - 1) * (x + 1) / (2 * x), sweep = 4 * std::atan(x);
+    const double height = half_ * (x - 1) * (x + 1) / (2 * x), sweep = 4 * base::atan(x);
     return {normal_, middle_ + (left_ ? height : -height) * left, left_ ? -sweep : sweep};
   }
 
@@ -151,7 +153,7 @@ void look_between(const Beside& m, double radius, double& missing, double& wrong
   for (const double y : {-std::sqrt(square), std::sqrt(square)})
     if (y > begin && y < end)
       wrong = std::max(wrong, std::abs(m.height + m.climb * (y - begin) / length -
-                                       m.rise * (std::atan2(y, d) - std::atan2(begin, d))));
+                                       m.rise * (base::atan2(y, d) - base::atan2(begin, d))));
 }
 
 /// Whether polyline and arc are within the tolerance of each other at every angle, and the angle never decreases.
@@ -171,7 +173,7 @@ bool fits(std::span<const Vec3> points, const PlaneArc& arc, double tolerance, s
     const Vec3 p = to_local(arc.normal, points[k]);
     const Vec2 from_centre = flat(p) - arc.centre;
     move.to = {glm::dot(from_centre, x), glm::dot(from_centre, y)};
-    const double angle = std::atan2(move.to.y, move.to.x);
+    const double angle = base::atan2(move.to.y, move.to.x);
     if (!(angle >= furthest - slack && angle <= sweep + slack)) return false;
     move.climb = p.z - before;
     const double height = p.z - first.z - rise * angle, off_here = std::abs(glm::length(move.to) - radius);

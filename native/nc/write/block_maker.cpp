@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
@@ -335,7 +336,7 @@ class BlockMaker {
       const auto apart = static_cast<double>(ticks(to[k], decimals) - ticks((*stands_)[k], decimals));
       sum += apart * apart;
     }
-    return std::sqrt(sum) * std::pow(10.0, -decimals);
+    return std::sqrt(sum) * base::pow(10.0, -decimals);
   }
 
   /// Notes where the rotary axes turn much further than the tool.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "nc/number_text.hpp"
@@ -22,7 +23,7 @@ constexpr double kSlack = 1e-9;
 
 /// Angle to the pole or its opposite, the smaller of both.
 double pole_angle(const Vec3& axis, const Vec3& pole) {
-  return std::atan2(glm::length(glm::cross(axis, pole)), std::abs(glm::dot(axis, pole)));
+  return base::atan2(glm::length(glm::cross(axis, pole)), std::abs(glm::dot(axis, pole)));
 }
 
 /// Smallest pole_angle on the great arc from a to b.
@@ -38,7 +39,7 @@ double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
   const Vec3 foot = pole - glm::dot(pole, normal) * normal;
   const double after_a = glm::dot(glm::cross(a, foot), normal), before_b = glm::dot(glm::cross(foot, b), normal);
   const bool on_arc = (after_a >= 0 && before_b >= 0) || (after_a <= 0 && before_b <= 0);
-  return on_arc ? std::min(ends, std::asin(off)) : ends;
+  return on_arc ? std::min(ends, base::asin(off)) : ends;
 }
 
 bool opposite(const Pose& a, const Pose& b) {

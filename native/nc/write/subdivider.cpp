@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 
@@ -25,7 +26,7 @@ double nearest_to_pole(const Motion& motion, const Vec3& pole) {
   if (motion.angle() > 0) {
     // The cosine of the angle to the pole varies as cos(angle t − phase), that to its opposite half a turn later.
     const Vec3 &start = motion.from().axis, ahead = glm::cross(motion.rotation() / motion.angle(), start);
-    double phase = std::atan2(glm::dot(ahead, pole), glm::dot(start, pole));
+    double phase = base::atan2(glm::dot(ahead, pole), glm::dot(start, pole));
     if (phase < 0) phase += kPi;
     if (phase < motion.angle()) return phase / motion.angle();
   }

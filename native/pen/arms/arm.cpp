@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 
 namespace riffler::pen {
 
 ArmPosture arm_posture(const ArmLinks& links, const Vec3& angles) noexcept {
-  const double s1 = std::sin(angles.x), c1 = std::cos(angles.x);
-  const double s2 = std::sin(angles.y), c2 = std::cos(angles.y);
-  const double s3 = std::sin(angles.z), c3 = std::cos(angles.z);
+  const double s1 = base::sin(angles.x), c1 = base::cos(angles.x);
+  const double s2 = base::sin(angles.y), c2 = base::cos(angles.y);
+  const double s3 = base::sin(angles.z), c3 = base::cos(angles.z);
   const double out = links.upper * s2 + links.fore * c3;  // distance from the vertical axis
   ArmPosture posture;
   posture.end = {out * c1, out * s1 + links.shoulder, links.fore * s3 - links.upper * c2};
@@ -20,8 +21,8 @@ ArmPosture arm_posture(const ArmLinks& links, const Vec3& angles) noexcept {
 }
 
 double arm_dexterity(const ArmLinks& links, const Vec3& angles) noexcept {
-  const double out = links.upper * std::sin(angles.y) + links.fore * std::cos(angles.z);
-  return std::cos(angles.y - angles.z) * out / (links.upper + links.fore);
+  const double out = links.upper * base::sin(angles.y) + links.fore * base::cos(angles.z);
+  return base::cos(angles.y - angles.z) * out / (links.upper + links.fore);
 }
 
 ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
@@ -41,8 +42,8 @@ ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
   const double s = std::clamp(less < more ? 1 - less : more - 1, -1.0, 1.0);
   const double c = std::sqrt(std::max(less, 0.0) * std::max(more, 0.0));
   // With θ2 = θ3 + δ the end is (L2 + L1 sin δ, −L1 cos δ) rotated by θ3.
-  const double third = std::atan2(end.z, out) - std::atan2(-links.upper * c, links.fore + links.upper * s);
-  inverse.angles = {std::atan2(y, end.x), third + std::atan2(s, c), third};
+  const double third = base::atan2(end.z, out) - base::atan2(-links.upper * c, links.fore + links.upper * s);
+  inverse.angles = {base::atan2(y, end.x), third + base::atan2(s, c), third};
   return inverse;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "pen/arms/wrench_split.hpp"
 
 namespace riffler::pen {
@@ -77,7 +78,7 @@ JointAngles gravity_torques(const PenGeometry& pen, const JointAngles& angles) n
   for (const PenChannel& c : pen.channels) {
     const double angle = angles[index(c.arm)][c.joint];
     // Joint 1 turns about the vertical: no weight.
-    out[index(c.arm)][c.joint] = c.joint == 0 ? 0 : c.gravity * (c.joint == 1 ? std::sin(angle) : std::cos(angle));
+    out[index(c.arm)][c.joint] = c.joint == 0 ? 0 : c.gravity * (c.joint == 1 ? base::sin(angle) : base::cos(angle));
   }
   return out;
 }
@@ -87,7 +88,7 @@ MotorTorques friction_torques(const PenGeometry& pen, const JointAngles& rates) 
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = pen.channels[k];
     const double rate = c.sign * rates[index(c.arm)][c.joint] * c.ratio;
-    out[k] = c.coulomb * std::tanh(rate / pen.friction_speed) + c.viscous * rate;
+    out[k] = c.coulomb * base::tanh(rate / pen.friction_speed) + c.viscous * rate;
   }
   return out;
 }

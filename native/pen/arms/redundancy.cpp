@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
@@ -21,18 +22,18 @@ constexpr double kConverged = 1e-3;     // counts
 
 /// From the centre of the circle on which joint `joint` moves the end, to the end.
 Vec3 arm_of_circle(const ArmLinks& links, const Vec3& angles, const Vec3& end, int joint) {
-  const double s1 = std::sin(angles.x), c1 = std::cos(angles.x);
+  const double s1 = base::sin(angles.x), c1 = base::cos(angles.x);
   const auto in_plane = [&](double out, double up) { return Vec3(out * c1, out * s1, up); };
   if (joint == 0) return {end.x, end.y - links.shoulder, 0};
-  if (joint == 1) return links.upper * in_plane(std::sin(angles.y), -std::cos(angles.y));
-  return links.fore * in_plane(std::cos(angles.z), std::sin(angles.z));
+  if (joint == 1) return links.upper * in_plane(base::sin(angles.y), -base::cos(angles.y));
+  return links.fore * in_plane(base::cos(angles.z), base::sin(angles.z));
 }
 
 /// Smallest angle from `from`, in the given direction (±1), at which the cosine is `c`; infinite if there is none.
 double way_to_cosine(double from, double way, double c) {
   if (!(std::abs(c) <= 1)) return kInfinity;
   double least = kInfinity;
-  for (const double at : {std::acos(c), -std::acos(c)}) {
+  for (const double at : {base::acos(c), -base::acos(c)}) {
     const double turn = std::fmod(way * (at - from), kTwoPi);
     least = std::min(least, turn < 0 ? turn + kTwoPi : turn);
   }
@@ -59,7 +60,7 @@ std::array<NoticedCounts, kPenChannels> noticed_counts(const PenKinematics& pen,
     // − φ).
     const Vec3 q = arm_of_circle(g.arms[arm], posture.angles[arm], moved.end, c.joint), t = moved.jacobian[c.joint];
     const Vec3 other = posture.arms[1 - arm].end - moved.end + q;
-    const double p = glm::dot(other, q), s = glm::dot(other, t), m = geom::hypot(p, s), phase = std::atan2(s, p);
+    const double p = glm::dot(other, q), s = glm::dot(other, t), m = geom::hypot(p, s), phase = base::atan2(s, p);
     const double sum = glm::dot(other, other) + glm::dot(q, q);
     const auto counts = [&](double way) {
       const double angle = std::min(way_to_cosine(-phase, way, (sum - longest * longest) / (2 * m)),

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "pen/hid/hid_descriptor.hpp"
 
@@ -104,9 +105,9 @@ const PolhemGeometry* polhem_geometry(std::string_view name) noexcept {
 }
 
 PolhemPosture polhem_posture(const PolhemGeometry& g, const Vec3& angles) noexcept {
-  const double ca = std::cos(angles.x), sa = std::sin(angles.x);
-  const double cb = std::cos(angles.y), sb = std::sin(angles.y);
-  const double cc = std::cos(angles.z), sc = std::sin(angles.z);
+  const double ca = base::cos(angles.x), sa = base::sin(angles.x);
+  const double cb = base::cos(angles.y), sb = base::sin(angles.y);
+  const double cc = base::cos(angles.z), sc = base::sin(angles.z);
   const double reach = g.upper * sb + g.fore * sc;
   PolhemPosture out;
   out.tip = Vec3(ca * reach, sa * reach, g.base + g.upper * cb - g.fore * cc) - g.origin;

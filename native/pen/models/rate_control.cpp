@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::pen {
@@ -28,7 +29,7 @@ Vec3 shaped(const Vec3& deflection, double bubble, double exponent) noexcept {
   const double length = glm::length(deflection);
   if (!(length > bubble) || !std::isfinite(length)) return Vec3(0);
   const double share = std::min((length - bubble) / (1 - bubble), 1.0);
-  return std::pow(share, exponent) / length * deflection;
+  return base::pow(share, exponent) / length * deflection;
 }
 
 RateControl::RateControl(const RateSettings& settings) : settings_(settings) {

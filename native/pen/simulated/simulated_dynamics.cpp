@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/functions.hpp"
 #include "pen/arms/wrench_split.hpp"
 
 namespace riffler::pen {
@@ -44,7 +45,7 @@ double beyond(double angle, double low, double high) {
 Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept {
   const Vec3 normal = glm::cross(from, to);
   const double sine = glm::length(normal);
-  return sine > 0 ? std::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
+  return sine > 0 ? base::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
 }
 
 /// Jacobian of the joints: columns for the grip's middle and for r_L − r_R, base frame.
@@ -241,7 +242,7 @@ double PenDynamics::potential() const {
   double out = 0;
   for (const PenChannel& c : g.channels) {
     const double angle = posture_.angles[index(c.arm)][c.joint];
-    if (c.joint != 0) out += c.gravity * (c.joint == 1 ? -std::cos(angle) : std::sin(angle));
+    if (c.joint != 0) out += c.gravity * (c.joint == 1 ? -base::cos(angle) : base::sin(angle));
   }
   for (std::size_t k = 0; k < kJoints; ++k) {
     const double way = beyond(entry(posture_.angles, k), low_[k], high_[k]);

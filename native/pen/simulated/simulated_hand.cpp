@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 Vec3 turned(const Vec3& axis, const Vec3& by) {
   const double angle = glm::length(by);
   if (angle == 0) return axis;
-  return glm::normalize(std::cos(angle) * axis + std::sin(angle) / angle * glm::cross(by, axis));
+  return glm::normalize(base::cos(angle) * axis + base::sin(angle) / angle * glm::cross(by, axis));
 }
 
 /// Two directions perpendicular to `axis`.
@@ -49,11 +50,11 @@ HandPath hand_on_a_curve(const Pose& home) {
     if (seconds <= kRest) return wish;
     const double turn = kTwoPi * (seconds - kRest) / kRound;
     // Starts smoothly at home: each term is zero at the beginning.
-    wish.pose.tip += kWay * (std::sin(turn) * sides.first + 0.5 * (1 - std::cos(turn)) * sides.second +
-                             0.3 * std::sin(2 * turn) * home.axis);
-    wish.pose.axis =
-        glm::normalize(home.axis + kLean * (std::sin(turn) * sides.second - 0.5 * (1 - std::cos(turn)) * sides.first));
-    wish.spin = 0.5 * std::sin(turn);
+    wish.pose.tip += kWay * (base::sin(turn) * sides.first + 0.5 * (1 - base::cos(turn)) * sides.second +
+                             0.3 * base::sin(2 * turn) * home.axis);
+    wish.pose.axis = glm::normalize(
+        home.axis + kLean * (base::sin(turn) * sides.second - 0.5 * (1 - base::cos(turn)) * sides.first));
+    wish.spin = 0.5 * base::sin(turn);
     wish.buttons = std::fmod(seconds - kRest, 2 * kRound) < kRound ? 1U : 0U;
     return wish;
   };
@@ -74,8 +75,8 @@ Vec3 SimulatedHand::tremor(double seconds) const {
   Vec3 out(0);
   for (int k = 0; k < 3; ++k) {
     const double turns = settings_.tremor_frequency * seconds;
-    out[k] = std::sin(kTwoPi * (0.83 * turns + 0.31 * k)) + std::sin(kTwoPi * (turns + 0.17 * k)) +
-             std::sin(kTwoPi * (1.19 * turns + 0.53 * k));
+    out[k] = base::sin(kTwoPi * (0.83 * turns + 0.31 * k)) + base::sin(kTwoPi * (turns + 0.17 * k)) +
+             base::sin(kTwoPi * (1.19 * turns + 0.53 * k));
   }
   return settings_.tremor / 3 * out;
 }

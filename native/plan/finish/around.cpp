@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/patterns.hpp"
@@ -36,10 +37,10 @@ PatternRows spiral_rows(const PatternScene& scene, const Progress& progress) {
   const auto radius = [=](double u, double v) { return pitch * (v + u / whole); };
   family.at = [=](double u, double v) {
     const double turn = std::min(u, whole);
-    return centre + radius(turn, v) * Vec2(std::cos(turn), std::sin(turn));
+    return centre + radius(turn, v) * Vec2(base::cos(turn), base::sin(turn));
   };
   family.along = [=](const Vec2& p, double v) {
-    const double turn = std::atan2(p.y - centre.y, p.x - centre.x);
+    const double turn = base::atan2(p.y - centre.y, p.x - centre.x);
     // Near the ends of a turn, the radius decides which turn the point is on.
     const double r = geom::hypot(p.x - centre.x, p.y - centre.y), at = turn < 0 ? turn + whole : turn;
     double best = at;
@@ -59,7 +60,7 @@ PatternRows radial_rows(const PatternScene& scene, const Progress& progress) {
   RowFamily family{0, far, spacing / kSamplesInSpacing, {}};
   for (int k = 0; k <= kFirstRays; ++k) family.first.push_back(k / kFirstRays);
   family.ring = true;
-  family.at = [=](double u, double v) { return centre + u * Vec2(std::cos(2 * kPi * v), std::sin(2 * kPi * v)); };
+  family.at = [=](double u, double v) { return centre + u * Vec2(base::cos(2 * kPi * v), base::sin(2 * kPi * v)); };
   family.along = [=](const Vec2& p, double) { return geom::hypot(p.x - centre.x, p.y - centre.y); };
   family.apart = [](double u, double v0, double v1) { return 2 * kPi * (v1 - v0) * u; };
   family.pace = [](double, double) { return 1.0; };

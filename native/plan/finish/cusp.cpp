@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
@@ -19,7 +20,7 @@ CutterProfile::CutterProfile(const Tool& tool) {
   for (const LowerSide& side : sides_) radius_ = std::max(radius_, side.rim());
   // Dense near the rim, where a ball is steep.
   for (int k = 0; k <= kPoints; ++k) {
-    const double rho = radius_ * std::sin(kPi / 2 * k / kPoints);
+    const double rho = radius_ * base::sin(kPi / 2 * k / kPoints);
     points_.emplace_back(rho, height(std::min(rho, radius_)));
   }
 }
@@ -77,7 +78,7 @@ double CutterProfile::spacing(double cusp) const {
 
 RowSteps::RowSteps(const CutterProfile& profile, double cusp) {
   for (int k = 0; k <= kSlopes; ++k) {
-    const double slope = kPi / 2 * k / kSlopes, x = std::cos(slope), z = std::sin(slope);
+    const double slope = kPi / 2 * k / kSlopes, x = base::cos(slope), z = base::sin(slope);
     double low = 0, high = profile.radius();
     for (int i = 0; i < 40; ++i) {
       const double d = 0.5 * (low + high);
@@ -88,7 +89,7 @@ RowSteps::RowSteps(const CutterProfile& profile, double cusp) {
 }
 
 double RowSteps::operator()(double across, double up) const {
-  const double at = std::atan2(std::abs(up), across) / (kPi / 2) * kSlopes;
+  const double at = base::atan2(std::abs(up), across) / (kPi / 2) * kSlopes;
   const auto k = static_cast<std::size_t>(std::min(at, kSlopes - 1.0));
   return std::min(steps_[k], steps_[k + 1]);
 }

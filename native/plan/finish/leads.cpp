@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/lead_arc.hpp"
@@ -54,7 +55,7 @@ std::vector<Vec3> Leads::arc(const std::vector<Vec3>& tips, bool reversed) const
   }
   // In the upright plane through the move; the arc begins straight above the surface.
   const Vec3 up(-way->z * way->x / across, -way->z * way->y / across, across);
-  const double turn = std::clamp(0.5 * kPi + std::atan2(way->z, across), kLeastTurn, kLongestTurn);
+  const double turn = std::clamp(0.5 * kPi + base::atan2(way->z, across), kLeastTurn, kLongestTurn);
   std::vector<Vec3> found = lead_arc(p, *way, up, radius_, turn);
   return fits(found, p) ? found : std::vector<Vec3>{};
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "riffler/base/parallel.hpp"
@@ -186,7 +187,7 @@ class Filler {
       const SurfacePoint s = scene_.surface.at(family_.at(u, side->v));
       if (!s.landing.touches || !(meant || scene_.surface.meant(s))) continue;
       const double across = geom::hypot(s.tip.x - m.tip.x, s.tip.y - m.tip.y), up = std::abs(s.tip.z - m.tip.z);
-      if (!scene_.surface.meant_slope(std::atan2(up, across))) continue;
+      if (!scene_.surface.meant_slope(base::atan2(up, across))) continue;
       if (scene_.profile.ridge(across, up) <= cusp_) continue;
       const Vec3 p = 0.5 * (s.tip + m.tip);
       if (std::min(ridge_to(nearest_on(x, p, u, window), p), ridge_to(nearest_on(y, p, u, window), p)) > cusp_)

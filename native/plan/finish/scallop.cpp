@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/field_rows.hpp"
@@ -80,7 +81,7 @@ class Distances {
   /// Whether both places are inside and the surface between them has no step.
   bool joined(std::size_t a, std::size_t b) const {
     return b != kNone && inside_[a] && inside_[b] &&
-           std::abs(places_[a].tip.z - places_[b].tip.z) <= 3 * std::tan(kSteepestFace) * grid_.spacing;
+           std::abs(places_[a].tip.z - places_[b].tip.z) <= 3 * base::tan(kSteepestFace) * grid_.spacing;
   }
   bool at_border(std::size_t k) const {
     for (int i = 0; i < 8; i += 2)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/median_tree.hpp"
 
@@ -28,7 +29,7 @@ SteepFaces::SteepFaces(const Mesh& mesh) {
     const Vec3i& t = mesh.triangles[k];
     const Triangle tri{mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]};
     const Vec3 n = glm::cross(tri.b - tri.a, tri.c - tri.a);
-    if (!(geom::hypot(n.x, n.y) > 0) || std::atan2(geom::hypot(n.x, n.y), std::abs(n.z)) < kSteep) continue;
+    if (!(geom::hypot(n.x, n.y) > 0) || base::atan2(geom::hypot(n.x, n.y), std::abs(n.z)) < kSteep) continue;
     all.push_back(tri), numbers.push_back(static_cast<int>(k)), centres.push_back((tri.a + tri.b + tri.c) / 3.0);
   }
   const std::size_t n = all.size();

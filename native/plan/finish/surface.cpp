@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "plan/operation_moves.hpp"
 #include "riffler/base/parallel.hpp"
@@ -162,18 +163,18 @@ bool FinishSurface::wanted_face(int triangle, const Vec3& point, double slope) c
 bool FinishSurface::creased(const SurfacePoint& a, const SurfacePoint& b) const {
   if (!a.landing.touches || !b.landing.touches || blocked(a) || blocked(b)) return false;
   return glm::dot(normals_[static_cast<std::size_t>(a.landing.triangle)],
-                  normals_[static_cast<std::size_t>(b.landing.triangle)]) < std::cos(kCrease);
+                  normals_[static_cast<std::size_t>(b.landing.triangle)]) < base::cos(kCrease);
 }
 
 double FinishSurface::face_slope(int triangle) const {
   const Vec3& n = normals_[static_cast<std::size_t>(triangle)];
-  return std::atan2(geom::hypot(n.x, n.y), n.z);
+  return base::atan2(geom::hypot(n.x, n.y), n.z);
 }
 
 double FinishSurface::touched_slope(const SurfacePoint& p) const {
   if (!round_) return rested_slope(p);
   const Vec3 off = p.landing.point - p.tip;
-  return std::atan2(std::max(0.0, geom::hypot(off.x, off.y) - round_->e), std::max(0.0, round_->zc - off.z));
+  return base::atan2(std::max(0.0, geom::hypot(off.x, off.y) - round_->e), std::max(0.0, round_->zc - off.z));
 }
 
 double FinishSurface::steepest_meant() const {
@@ -195,12 +196,12 @@ double FinishSurface::above(const Vec3& from, const Vec3& to) const {
 bool FinishSurface::rolls(const SurfacePoint& p) const {
   if (!p.landing.touches || blocked(p)) return false;
   const auto on_edge = [&](const Vec3& normal) {
-    return glm::dot(normal, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
+    return glm::dot(normal, normals_[static_cast<std::size_t>(p.landing.triangle)]) < base::cos(kRolling);
   };
   const Vec2 off = Vec2(p.tip) - Vec2(p.landing.point);
   const double across = geom::hypot(off.x, off.y);
   const auto flank_on_edge = [&] {
-    return flank_ && across > level_end_ && on_edge(Vec3(std::cos(*flank_) / across * off, std::sin(*flank_)));
+    return flank_ && across > level_end_ && on_edge(Vec3(base::cos(*flank_) / across * off, base::sin(*flank_)));
   };
   if (!(ball_ > 0)) return flank_on_edge();
   const Vec3 towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/row_index.hpp"
@@ -142,7 +143,7 @@ class Uncut {
     const double length = glm::length(p[1] - p[0]);
     if (!(length > 0)) return;
     const double height = glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / length;
-    const double step = std::max(finest_, kStep * steps_(std::cos(slope), std::sin(slope)));
+    const double step = std::max(finest_, kStep * steps_(base::cos(slope), base::sin(slope)));
     const bool small = length < kSmallFace * step;
     const int rows = std::max(small ? 1 : 2, static_cast<int>(std::ceil(height / step)));
     const auto look = [&](const Vec3& contact) {
@@ -172,11 +173,11 @@ class Uncut {
 
   /// The spot of a contact, if the rows leave it and the cutter reaches it.
   std::optional<Spot> left_at(const Vec3& contact, const Vec3& normal) const {
-    const bool level = normal.z > std::cos(kLevelFace) && !(cutter_.ball_radius() > 0);
+    const bool level = normal.z > base::cos(kLevelFace) && !(cutter_.ball_radius() > 0);
     const Vec3 point = contact + high_ * normal;
     for (int k = 0; k < (level ? kSides : 1); ++k) {
       const double turn = geom::kTwoPi * k / kSides;
-      const Vec3 feed(std::cos(turn), std::sin(turn), 0);
+      const Vec3 feed(base::cos(turn), base::sin(turn), 0);
       const Vec3 on_face = contact + scene_.options.allowance * normal;
       const Vec3 tip = location_of_contact(cutter_, on_face, level ? Vec3(0, 0, 1) : normal, {0, 0, 1}, feed).tip;
       if (k == 0 && is_cut({point, tip, {}}, level)) return {};
@@ -226,8 +227,8 @@ class Uncut {
       const Vec2 off = Vec2(spots[i].tip) - Vec2(spots[k].tip);
       if (geom::hypot(off.x, off.y) < 2 * spacing_) xx += off.x * off.x, xy += off.x * off.y, yy += off.y * off.y;
     }
-    const double turn = 0.5 * std::atan2(2 * xy, xx - yy);
-    return {std::cos(turn), std::sin(turn)};
+    const double turn = 0.5 * base::atan2(2 * xy, xx - yy);
+    return {base::cos(turn), base::sin(turn)};
   }
 
   static constexpr std::size_t kNeighbours = 100;

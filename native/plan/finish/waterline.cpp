@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/field_rows.hpp"
@@ -48,7 +49,7 @@ std::vector<Vec3> unseen_places(const PatternScene& scene, const LevelCurves& cu
     std::array<Vec3, 3> v{mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]};
     const Vec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
     const double flat = geom::hypot(normal.x, normal.y);
-    if (!(flat > 0) || std::atan2(flat, std::abs(normal.z)) < kUpright) return {};
+    if (!(flat > 0) || base::atan2(flat, std::abs(normal.z)) < kUpright) return {};
     if (!scene.surface.wanted_face(static_cast<int>(triangle), (v[0] + v[1] + v[2]) / 3.0,
                                    scene.surface.face_slope(static_cast<int>(triangle))))
       return {};

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 #include "plan/lead_arc.hpp"
 #include "plan/operation_moves.hpp"
@@ -276,7 +277,7 @@ class Cutter {
       moves_.approach(Vec3(loop.point(0), before), in_.plane, before + kAbove);
       start_ = 0;
     }
-    const double slope = std::tan(options_.slope), length = (before - z) / slope;
+    const double slope = base::tan(options_.slope), length = (before - z) / slope;
     double s = start_;
     for (const double stop : stops(loop, start_, start_ + length, tabs)) {
       const Vec3 here = moves_.last();

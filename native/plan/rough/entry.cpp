@@ -5,6 +5,7 @@
 #include <functional>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::plan {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kHelixTurn = kPi / 18;  // angle between two points of a helix, rad
 
 Vec2 on_helix(const Entry& entry, int k) {
-  return entry.path.front() + entry.radius * Vec2(std::cos(k * kHelixTurn), std::sin(k * kHelixTurn));
+  return entry.path.front() + entry.radius * Vec2(base::cos(k * kHelixTurn), base::sin(k * kHelixTurn));
 }
 
 }  // namespace
@@ -27,9 +28,9 @@ double length_of(const std::vector<Vec2>& path) {
 
 std::vector<Vec3> way_down(const Entry& entry, double top, double z, double slope) {
   std::vector<Vec3> out;  // in upward order; reversed at the end
-  const double rate = std::tan(slope);
+  const double rate = base::tan(slope);
   if (entry.radius > 0) {
-    const double up = 2 * entry.radius * std::sin(0.5 * kHelixTurn) * rate;
+    const double up = 2 * entry.radius * base::sin(0.5 * kHelixTurn) * rate;
     for (int k = 0;; ++k) {
       out.emplace_back(on_helix(entry, -k), std::min(top, z + k * up));
       if (out.back().z >= top) break;

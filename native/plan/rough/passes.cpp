@@ -1,9 +1,9 @@
 #include "plan/rough/passes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "base/functions.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::plan {
@@ -50,7 +50,7 @@ class Track {
 
 /// Distance of a ramp from the curve after a share of its length: from 1 at the start to 0 at the end.
 double beside_after(double share) {
-  return 0.5 + 0.5 * std::cos(kPi * std::clamp(share, 0.0, 1.0));
+  return 0.5 + 0.5 * base::cos(kPi * std::clamp(share, 0.0, 1.0));
 }
 
 /// Adds a pass along all points of a track. `walled`: the cutter touches material at the first point already.
