@@ -75,9 +75,12 @@ class PenOrientation:
         if not plan_store.is_plan(ob) or timeline.pair(ob) is None:
             return None
         plan = plan_store.plan(ob)
-        if self.path >= len(plan.paths) or not _same_line(plan.paths[self.path], self._line):
-            return None
-        return current_pose.Spot(ob, plan, self.path, self.run.point)
+        # Paths after a deleted one have other numbers.
+        for path in (self.path, *range(len(plan.paths))):
+            if path < len(plan.paths) and _same_line(plan.paths[path], self._line):
+                self.path = path
+                return current_pose.Spot(ob, plan, path, self.run.point)
+        return None
 
     def _turn(self):
         self.run.turn(views.facing(), np.eye(3), self.run.touching is not None)

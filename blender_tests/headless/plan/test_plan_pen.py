@@ -162,6 +162,52 @@ def test_removing_the_plan_ends_the_session_with_a_message():
     ended()
 
 
+def test_undo_that_takes_its_path_away_ends_the_session_and_leaves_the_others_as_they_were():
+    ob = scene()
+    name = ob.name
+    common.push("both paths")
+    delete_first_path(ob)
+    other = paths(ob)[0]
+    common.push("one path")
+    bpy.ops.ed.undo()
+    ob = bpy.data.objects[name]
+    hand = Tablet(ob)
+    run = hand.session.run
+    common.refused(lambda: delete_first_path(ob), "A pen session is running: Esc ends it")
+    bpy.ops.ed.redo()
+    ob = bpy.data.objects[name]
+    assert not hand.session.look() and not run.running
+    _, text, done = hand.session.summary()
+    assert not done and "its path was deleted or found again" in text, text
+    ended(ob)
+    (left,) = paths(ob)
+    assert np.array_equal(left.centres, other.centres) and list(left.keys) == list(other.keys)
+    assert all(close(left.keys[k], other.keys[k], 1e-6) for k in other.keys)
+
+
+def test_undo_that_renumbers_its_path_leaves_the_session_with_it():
+    ob = plans.on_timeline(chosen=plans.paths()[::-1])
+    name = ob.name
+    bpy.context.scene.riffler.plan.part = plans.part_object()
+    common.push("both paths")
+    delete_first_path(ob)
+    common.push("one path")
+    bpy.context.scene.frame_set(73)
+    hand = Tablet(ob)
+    bpy.ops.ed.undo()
+    ob = bpy.data.objects[name]
+    assert hand.session.look() and hand.session.path == 1, hand.session.problem
+    hand.to(20.0, -0.7, buttons=1)
+    assert hand.session.run.point in indices(ob)[1] and [len(keys) for keys in indices(ob)] == [3, 3]
+    hand.session.finish()
+    ended(ob)
+
+
+def delete_first_path(ob):
+    ob.riffler.plan.row = 0
+    assert bpy.ops.riffler.plan_delete_paths(which="CHOSEN") == {"FINISHED"}
+
+
 def test_another_file_ends_the_session():
     ob = scene()
     hand = Tablet(ob)
