@@ -9,6 +9,7 @@ import numpy as np
 import riffler
 
 from ...common import poses
+from ...sculpt.pure.journal import add_again
 
 
 def journal_of(cuts) -> riffler.Journal:
@@ -23,16 +24,16 @@ def journal_of(cuts) -> riffler.Journal:
     return journal
 
 
-def placed(journal: riffler.Journal, to_world: np.ndarray) -> riffler.Journal:
-    """The journal's strokes that remove material, moved by a rotation and a translation (4, 4)."""
+def placed(recording: riffler.Journal, to_world: np.ndarray) -> riffler.Journal:
+    """The recording's strokes, moved by a rotation and a translation (4, 4)."""
     out = riffler.Journal()
-    for number, tool in journal.tools.items():
+    for number, tool in recording.tools.items():
         out.add_tool(number, tool)
-    for stroke in journal.strokes:
+    for stroke in recording.strokes:
         rows = stroke.poses
         directions = [poses.unit(rows[:, k : k + 3] @ to_world[:3, :3].T) for k in range(3, rows.shape[1], 3)]
         moved = np.hstack([poses.transform_points(to_world, rows[:, :3]), *directions])
-        out.add_stroke(stroke.tool, moved, mode=stroke.mode, strength=stroke.strength)
+        add_again(out, stroke, poses=moved, forces=None)  # forces have the old directions
     return out
 
 

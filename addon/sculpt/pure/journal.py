@@ -239,13 +239,10 @@ def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
     out.save(path)
 
 
-def add_again(out: riffler.Journal, stroke) -> None:
-    """Adds a stroke of another journal, with everything it has."""
-    s = stroke
-    out.add_stroke(
-        s.tool, s.poses, times=s.times, tolerance=s.tolerance, name=s.name, forces=s.forces, removed=s.removed,
-        mode=s.mode, strength=s.strength, amount=s.amount, falloff=s.falloff,
-    )  # fmt: skip
+def add_again(out: riffler.Journal, stroke, **changed) -> None:
+    """Adds a stroke of another journal, with everything it has except what `changed` names."""
+    kept = ("poses", "times", "tolerance", "name", "forces", "removed", "mode", "strength", "amount", "falloff")
+    out.add_stroke(stroke.tool, **{name: getattr(stroke, name) for name in kept} | changed)
 
 
 # ---------------------------------------------------------------------- after a crash
