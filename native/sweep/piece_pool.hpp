@@ -11,8 +11,8 @@
 namespace riffler::sweep {
 
 /// Origins of both ends of a span. An end that a cut has made holds 2 k + t: it arose in step k of the carver's steps
-/// at the motion's time t, in units of 2^-30. Its normal is computed when the tile is packed, because most ends are cut
-/// away before. kStored: the normal is stored.
+/// at the step's time t (for_each_step), in units of 2^-30. Its normal is computed when the tile is packed, because
+/// most ends are cut away before. kStored: the normal is stored.
 struct Origins {
   static constexpr double kStored = -1;
   static constexpr double kUnit = 1.0 / (1 << 30);

@@ -140,8 +140,7 @@ void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, st
     if (times.far < 1) to = motion.at(times.far);
     const Footprint footprint(group.all(), {from, to}, 0);
     if (footprint.overlaps(box))
-      sink({move, &motion, footprint,
-            StraightPart{group, StraightBody(group, from, to.tip - from.tip, times.near, times.far)}});
+      sink({move, &motion, footprint, StraightPart{group, StraightBody(group, from, to.tip - from.tip, 0, 1)}});
   }
 }
 

@@ -57,6 +57,10 @@ TileBlock tiles_under(const dexel::Grid& grid, const Footprint& footprint);
 /// Calls `sink`, in order of t, for every step of the cutter on `motion` that can touch `box`. Poses, box and steps are
 /// in the cyclic frame of one grid; `motion` must outlive the steps. For a turning ball only the centre's path matters:
 /// it is cut in straight steps along chords that deviate from the path by at most `tolerance` (mm).
+///
+/// A step of a move that turns has the times of the move. That of a move that does not has times of its own, from 0
+/// to 1 on the part of the path that is near the box: an end keeps its time in units of 2^-30 (Origins), which would be
+/// too coarse for its normal where the move is 1e5 times as long as the tool.
 void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
                    double tolerance, const std::function<void(Step&&)>& sink);
 

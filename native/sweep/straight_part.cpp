@@ -42,7 +42,7 @@ StraightBody::StraightBody(const ConvexGroup& group, const Pose& from, const Vec
   const Vec3 o = from.axis, unit = way > 0 ? motion / way : Vec3(0);
   const Vec3 a = tilt > 0 ? Vec3(-o.z * o.x / tilt, -o.z * o.y / tilt, tilt) : Vec3(1, 0, 0);
   const Vec3 b = tilt > 0 ? Vec3(o.y / tilt, -o.x / tilt, 0) : Vec3(0, o.z, 0);
-  for (int i = 0; i < 3; ++i) tip[i] = from.tip[i], axis[i] = o[i], e1[i] = a[i], e2[i] = b[i];
+  for (int i = 0; i < 3; ++i) tip[i] = from.tip[i], moved[i] = motion[i], axis[i] = o[i], e1[i] = a[i], e2[i] = b[i];
   m1 = glm::dot(unit, a), m2 = glm::dot(unit, b), mo = glm::dot(unit, o);
   face = SectionLine(oz, -mo, 1e-12);
   const double rise = way * (m1 * tilt + mo * oz);

@@ -40,16 +40,18 @@ struct SweptShape : PieceShape {
 /// start, so that coordinates far from the origin lose no precision. Three vectors e1, e2, axis with e1 × e2 = axis;
 /// the rays lie in the plane of axis and e1, in the direction tilt e1 + oz axis.
 struct StraightBody {
-  /// The tool's tip starts at `from` and moves by `motion` (mm, may be zero) between the times t0 and t1 of its move.
+  /// The tool's tip starts at `from` and moves by `motion` (mm, may be zero) between the times t0 and t1: those of its
+  /// move where that turns; else 0 and 1, for the part of its move near the grid (for_each_step).
   StraightBody(const ConvexGroup& group, const Pose& from, const Vec3& motion, double t0, double t1);
 
   std::size_t count;
   std::array<SweptShape, ConvexGroup::kMax> pieces;
-  double tip[3], axis[3], e1[3], e2[3];
+  double tip[3], moved[3];  ///< the tip at t0, its displacement
+  double axis[3], e1[3], e2[3];
   double tilt, oz;
   double way, m1, m2, mo;  ///< length of the motion and its unit vector in the frame
   SectionLine face;        ///< for planes perpendicular to the axis
-  double t0, per_way;      ///< the move's t at path length τ is t0 + τ per_way
+  double t0, per_way;      ///< t at path length τ is t0 + τ per_way
   double middle;           ///< t at the midpoint
 };
 

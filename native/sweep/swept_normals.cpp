@@ -33,6 +33,10 @@ SweptSurface::SweptSurface(const Step& step, Axis grid) {
     tip[i] = from[i], way[i] = to[i] - from[i], spin[i] = turn[i];
     axis[i] = now[i], side[i] = sideways[i];
   }
+  if (angle == 0) {  // from 0 to 1 on the body's own path
+    const StraightBody& body = std::get<StraightPart>(step.body).body;
+    std::copy_n(body.tip, 3, tip), std::copy_n(body.moved, 3, way);
+  }
   world = (2 - static_cast<int>(grid)) % 3;
 }
 

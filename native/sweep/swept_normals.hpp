@@ -17,7 +17,7 @@ struct SweptSurface {
 
   std::size_t count;
   std::array<PieceShape, ConvexGroup::kMax> pieces;
-  double tip[3], way[3], spin[3];  ///< the tip at t = 0, its displacement, and the rotation vector
+  double tip[3], way[3], spin[3];  ///< the tip at t = 0, its displacement until t = 1, and the rotation vector
   double axis[3], side[3];         ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
   double angle, middle;
   bool wide;  ///< θ is too large for the kernel's series: it gets the axes
