@@ -46,7 +46,8 @@ class StraightRound {
 
  private:
   static constexpr int kSteps = 16;
-  static constexpr double kNear = 3e-5;  // of the smaller radius; a step shorter than this ends exactly
+  static constexpr double kNear = 3e-5;      // of the smaller radius; a step shorter than this ends exactly
+  static constexpr double kNearAxis = 3e-4;  // of ρ; the same for a barrel
   struct Point {
     V a, b, z, square, rho;  // relative to the centre; ρ² and ρ
   };
@@ -54,6 +55,7 @@ class StraightRound {
     V f;                               // F − r²
     V along, across;                   // ½ ∂F/∂s, ½ ∂F/∂τ
     V along_bend, across_bend, mixed;  // ½ ∂²F/∂s², ½ ∂²F/∂τ², ½ ∂²F/∂s∂τ
+    V rho;
   };
 
   HWY_INLINE Point point(V s, V way) const {
@@ -87,6 +89,7 @@ class StraightRound {
     g.along_bend = bend(rho_s, rho_s, b_.tilt * b_.tilt, b_.oz * b_.oz);
     g.across_bend = bend(rho_t, rho_t, b_.m1 * b_.m1 + b_.m2 * b_.m2, b_.mo * b_.mo);
     g.mixed = bend(rho_s, rho_t, -b_.tilt * b_.m1, -b_.oz * b_.mo);
+    g.rho = p.rho;
     return g;
   }
 
@@ -164,7 +167,9 @@ class StraightRound {
     const V lean = hn::Mul(hn::Sub(wanted, hn::Mul(g.mixed, move)), per_bend);
     const V next = pick(free, on_way(hn::Add(way, lean)), hn::Add(way, on)), turn = hn::Sub(next, way);
     s = pick(open, hn::Add(s, move), s), way = pick(open, next, way);
-    return hn::Le(max(abs(move), abs(turn)), set(kNear * std::min(p_.r, p_.e + p_.r)));
+    const V near = set(kNear * std::min(p_.r, p_.e + p_.r));
+    // A barrel's F has an edge on the axis: near it, F bends within a length of ρ.
+    return hn::Le(max(abs(move), abs(turn)), p_.e < 0 ? min(near, hn::Mul(set(kNearAxis), g.rho)) : near);
   }
 
   // Fallback, slow and safe:

@@ -161,6 +161,25 @@ TEST(Carve, ARayThroughTheLineOfAnApexKeepsItsRidge) {
         }
 }
 
+/// The search for the end begins on the axis, where the distance from a barrel has an edge.
+TEST(Carve, ARayOnABarrelsAxisIsCutAsDeepAsTheBarrelReaches) {
+  const Tool tool = cutters::profile(
+      {{{0.9375, 0}, {}}, {{2.8125, 5.625}, Vec2(-15.689056870495493, 8.667185623498499)}, {{3, 7.5}, {}}}, 104);
+  const Vec3 start{27.75, 21.75, 39};
+  for (const Vec3& way : {Vec3(2.435148541926, 0.190374136, -5.831180720), Vec3(2, 0, -4.5), Vec3(0, -3, -9)}) {
+    const Pose from{start, {0, 0, 1}}, to{start + way, {0, 0, 1}};
+    const reference::SweptDistance swept(tool.profile(), Motion(from, to));
+    for (const double aside : {0.0, 5e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2}) {
+      Volume volume = Volume::block({{{aside, aside / 2, 0}, {43.5 + aside, 37.5 + aside / 2, 39}}, 1.5, "z"});
+      carve(volume, tool, std::vector<Pose>{from, to});
+      const dexel::Grid& grid = volume.grids()[0];
+      const auto ray = grid.ray(18, 14);
+      ASSERT_EQ(ray.size(), 1U);
+      EXPECT_LT(std::abs(swept({grid.shifted_u(18), grid.shifted_v(14), ray[0].far})), 1e-8) << aside << ", " << way.z;
+    }
+  }
+}
+
 TEST(Carve, ATurnOnALongMoveIsWorkOnlyWhereTheToolPasses) {
   // A million radii and half a turn, of which the tool spends a millionth near the block.
   const double r = 1.5e-3;
