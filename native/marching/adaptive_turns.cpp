@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/sort_unique.hpp"
+#include "marching/plain_brick.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
@@ -218,6 +219,10 @@ bool AdaptiveState::Turns::gather_border(const Vec3i& at, int group, GroupInput&
 bool AdaptiveState::Turns::gather_inside(std::size_t brick, GroupInput& input) const {
   const ActiveBrick& active = *bricks_.active(brick);
   if (active.edges() == 0) return false;
+  if (active.plain && active.pulled.empty()) {
+    gather_plain(brick, input);
+    return true;
+  }
   const std::vector<BorderFace>& faces = borders_[brick]->faces;
   const std::vector<std::uint32_t>& border = state_.groups_.border(brick).triangles;
   const Mesh& mesh = state_.surface_.mesh;
@@ -254,6 +259,35 @@ bool AdaptiveState::Turns::gather_inside(std::size_t brick, GroupInput& input) c
   }
   std::fill(input.begin.begin() + 1, input.begin.end(), static_cast<std::uint32_t>(input.triangles.size()));
   return true;
+}
+
+/// The inside of a plain brick, with the few triangles of `flat_square` instead of its own.
+void AdaptiveState::Turns::gather_plain(std::size_t brick, GroupInput& input) const {
+  const ActiveBrick& active = *bricks_.active(brick);
+  const std::vector<BorderFace>& faces = borders_[brick]->faces;
+  const FlatSquare& square = flat_square();
+  for (const BorderFace& face : faces)
+    if (!face.removed) input.names.insert(input.names.end(), face.v.begin(), face.v.end());
+  for (const std::uint32_t v : square.vertices) input.names.push_back({Vec3i(0), v});
+  base::sort_unique(input.names);
+  for (const VertexName& v : input.names)
+    input.vertices.push_back(state_.surface_.mesh.vertices[static_cast<std::size_t>(state_.number(active.at, v))]);
+  const auto number = [&](const VertexName& v) {
+    return static_cast<std::int32_t>(std::lower_bound(input.names.begin(), input.names.end(), v) - input.names.begin());
+  };
+  for (const BorderFace& face : faces) {
+    if (face.removed) continue;
+    input.triangles.push_back({number(face.v[0]), number(face.v[1]), number(face.v[2])});
+    input.errors.push_back(face.error);
+  }
+  // From u to v is clockwise seen from the end of the second axis, because the first and the third are then u and v.
+  const bool swapped = (active.plain->axis == 1) != active.plain->rising;
+  for (const auto& t : square.triangles) {
+    const std::int32_t a = number({Vec3i(0), t[0]}), b = number({Vec3i(0), t[1]}), c = number({Vec3i(0), t[2]});
+    input.triangles.push_back(swapped ? Vec3i(a, c, b) : Vec3i(a, b, c));
+    input.errors.push_back(0);
+  }
+  std::fill(input.begin.begin() + 1, input.begin.end(), static_cast<std::uint32_t>(input.triangles.size()));
 }
 
 void AdaptiveState::Turns::mark_movable(const Layer& layer, std::size_t brick, int group, GroupInput& input) const {

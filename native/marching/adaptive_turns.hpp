@@ -30,6 +30,7 @@ class AdaptiveState::Turns {
                 mesh::StarCollapser& collapser) const;
   bool gather_border(const Vec3i& at, int group, GroupInput& input) const;
   bool gather_inside(std::size_t brick, GroupInput& input) const;
+  void gather_plain(std::size_t brick, GroupInput& input) const;
   void mark_movable(const Layer& layer, std::size_t brick, int group, GroupInput& input) const;
   void keep(std::size_t brick, int group, const Result& old, const Result& now);
 

@@ -1,6 +1,7 @@
 #include <bit>
 
 #include "marching/neighbourhood.hpp"
+#include "marching/plain_brick.hpp"
 #include "marching/surface.hpp"
 #include "marching/vertices.hpp"
 #include "riffler/base/parallel.hpp"
@@ -63,6 +64,8 @@ class BrickMesher {
     brick_ = &brick, signs_ = &signs;
     origin_ = brick.at * kBrickSide;
     find_hits();
+    brick.plain = plain_face();
+    brick.hollow = surface_.hollow && brick.plain;
     place_cells();
     split_quads();
   }
@@ -99,6 +102,45 @@ class BrickMesher {
     corners_.resize(hits_.size());
   }
 
+  /// The brick's plane if it is plain: see plain_brick.hpp.
+  std::optional<PlainFace> plain_face() const {
+    // As many edges as vertices, and all of them in one layer: no other edges and vertices are left.
+    if (brick_->edges() != kBrickColumns || brick_->vertices() != kBrickColumns) return std::nullopt;
+    std::optional<PlainFace> face;
+    for (int i = 0; i < kBrickSide; ++i)
+      for (int j = 0; j < kBrickSide; ++j)
+        for (int axis = 0; axis < 3; ++axis) {
+          const std::uint64_t crossed = crossed_[axis][column(i, j)], own = crossed & Neighbourhood::kOwn;
+          if (own == 0) continue;
+          const int k = std::countr_zero(own) - Neighbourhood::kLayers;
+          std::uint32_t e = start_[axis][column(i, j)] +
+                            static_cast<std::uint32_t>(std::popcount(crossed & (Neighbourhood::kFirstOwn - 1)));
+          const int layer = axis == 0 ? i : axis == 1 ? j : k;
+          const bool rising = !(signs_->column(i, j) >> (k + Neighbourhood::kLayers) & 1);
+          if (!face) face = PlainFace{axis, layer, hits_[e].place, rising};
+          // A vertex of the last layer belongs to what the next brick shares.
+          if (axis != face->axis || layer != face->layer || layer == kBrickSide - 1 || rising != face->rising ||
+              own != (axis == 2 ? own & -own : Neighbourhood::kOwn))
+            return std::nullopt;
+          for (std::uint64_t rest = own; rest; rest &= rest - 1, ++e)
+            if (!lies_in(*face, hits_[e])) return std::nullopt;
+        }
+    return face;
+  }
+  static bool lies_in(const PlainFace& face, const Hit& hit) {
+    std::array<float, 3> normal{0, 0, 0};
+    normal[face.axis] = face.rising ? -1.0F : 1.0F;
+    return hit.place == face.place && hit.place >= 0 && hit.place <= 1 && hit.normal == normal;
+  }
+
+  /// Whether a cell's vertices are left out.
+  bool is_left_out(int i, int j, int k) const {
+    if (!brick_->hollow || i < 0 || j < 0 || k < 0) return false;
+    return brick_->plain->axis == 0   ? !has_hollow_vertex(j, k)
+           : brick_->plain->axis == 1 ? !has_hollow_vertex(i, k)
+                                      : !has_hollow_vertex(i, j);
+  }
+
   void place_cells() {
     places_.clear(), numbers_.clear(), sides_.clear();
     for (int i = -1; i < kBrickSide; ++i)
@@ -133,7 +175,8 @@ class BrickMesher {
       const bool own = i >= 0 && j >= 0 && k >= 0;
       const std::int32_t number = numbers.take(k, entry.cycles);
       siblings_.places.clear(), siblings_.left = false;
-      for (int c = 0; c < entry.cycles; ++c) place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
+      for (int c = 0; c < entry.cycles && !is_left_out(i, j, k); ++c)
+        place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
       for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
     }
   }
@@ -186,8 +229,11 @@ class BrickMesher {
           const std::uint64_t crossed = crossed_[axis][column(i, j)];
           std::uint32_t e = start_[axis][column(i, j)] +
                             static_cast<std::uint32_t>(std::popcount(crossed & (Neighbourhood::kFirstOwn - 1)));
-          for (std::uint64_t rest = crossed & Neighbourhood::kOwn; rest; rest &= rest - 1, ++e, ++quad)
+          for (std::uint64_t rest = crossed & Neighbourhood::kOwn; rest; rest &= rest - 1, ++e, ++quad) {
+            const auto n = static_cast<int>(quad - brick_->first_edge);
+            if (brick_->hollow && !has_hollow_quad(n / kBrickSide, n % kBrickSide)) continue;
             split(quad, e, edge(axis, i, j, std::countr_zero(rest)), tie);
+          }
         }
   }
 

@@ -66,6 +66,13 @@ struct MovedVertex {
   Vec3 before;
 };
 
+/// The one plane of a plain brick (plain_brick.hpp).
+struct PlainFace {
+  int axis, layer;  // across which it lies, and the place of its edges along it
+  float place;      // of the hits on these edges, pitches
+  bool rising;      // of these edges
+};
+
 /// Data of a brick that the surface runs through, in addition to its signs. Its edges (one quad each) are those that
 /// start at its points, numbered by column, axis and K. Its vertices are those of its cells, numbered by column, K and
 /// cycle.
@@ -79,6 +86,8 @@ struct ActiveBrick {
   std::vector<VertexChoice> specials;  // by vertex, ascending
   std::vector<QuadRef> suspects;       // quads that may fold onto a neighbour
   std::vector<MovedVertex> pulled;
+  std::optional<PlainFace> plain;
+  bool hollow = false;  // plain, and only partly made
 
   std::size_t edges() const { return plane_edge[kBrickSide]; }
   std::size_t vertices() const { return plane_vertex[kBrickSide]; }

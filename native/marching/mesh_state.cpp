@@ -21,7 +21,7 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::v
 
 }  // namespace
 
-MeshState::MeshState(const Volume& now, bool room, const Progress& progress)
+MeshState::MeshState(const Volume& now, bool room, const Progress& progress, bool hollow)
     : volume(now),
       lattice(volume),
       bricks(lattice),
@@ -29,6 +29,7 @@ MeshState::MeshState(const Volume& now, bool room, const Progress& progress)
       facets(bricks.size()),
       reader_(lattice),
       room_(room) {
+  surface.hollow = hollow;
   follow(now);
   build(progress);
 }

@@ -25,7 +25,8 @@ struct MeshState {
   std::unique_ptr<AdaptiveState> adaptive;
 
   /// `room`: reserve space for bricks to grow, for updates; only address space until it is used.
-  MeshState(const Volume& volume, bool room, const Progress& progress);
+  /// `hollow`: leave out most of what only the full mesh needs. Then simplify() must follow, and no update.
+  MeshState(const Volume& volume, bool room, const Progress& progress, bool hollow = false);
   /// Leaves out the triangles that are not needed for `tolerance` (mm, > 0), now and, with room, after each update.
   void simplify(double tolerance, const Progress& progress);
   /// `normals`: also returns the bricks whose triangles are the same, but whose normals at corners may differ.

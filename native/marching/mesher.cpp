@@ -31,8 +31,8 @@ void check_tolerance(double tolerance) {
 }
 
 /// Whether a tolerance is at least one step of the lattice on which vertices lie.
-bool is_usable(double tolerance, const MeshState& state) {
-  return tolerance >= state.lattice.step();
+bool is_usable(double tolerance, const Lattice& lattice) {
+  return tolerance >= lattice.step();
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ Mesher::Mesher(const Volume& volume, const Progress& progress)
 Mesher::Mesher(const Volume& volume, double tolerance, const Progress& progress) {
   check_tolerance(tolerance);
   state_ = std::make_unique<MeshState>(volume, true, base::part(progress, 0, 0.4));
-  if (is_usable(tolerance, *state_)) state_->simplify(tolerance, base::part(progress, 0.4, 1));
+  if (is_usable(tolerance, state_->lattice)) state_->simplify(tolerance, base::part(progress, 0.4, 1));
   base::report(progress, 1);
 }
 Mesher::~Mesher() = default;
@@ -121,9 +121,10 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
 
 Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress, std::size_t* all) {
   check_tolerance(tolerance);
-  MeshState state(volume, false, base::part(progress, 0, 0.6));
+  const bool usable = is_usable(tolerance, Lattice(volume));
+  MeshState state(volume, false, base::part(progress, 0, 0.6), usable);
   if (all) *all = state.surface.mesh.triangles.size();
-  if (!is_usable(tolerance, state)) return state.take();
+  if (!usable) return state.take();
   state.simplify(tolerance, base::part(progress, 0.6, 1));
   return state.compact();
 }

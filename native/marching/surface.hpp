@@ -31,6 +31,7 @@ struct Surface {
   /// corners are counter-clockwise around the edge seen from outside.
   Mesh mesh;
   base::BulkVector<std::uint8_t> marks;  // of each vertex
+  bool hollow = false;                   // leave out what plain bricks need only for all triangles
 
   Surface(const Volume& volume, const Lattice& on, Bricks& of)
       : lattice(on), bricks(of), hits(volume, on), grid(on), mesh{}, marks{} {}
