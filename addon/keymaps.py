@@ -7,6 +7,7 @@ import bpy
 import rna_keymap_ui
 
 from . import menus
+from .pen import operators as pen_operators
 from .program import simulation
 from .sculpt import panel
 from .translations import CONTEXT
@@ -31,12 +32,13 @@ def _menu(operator, menu, **event):
     return Key("Object Mode", operator, event, menu.bl_label, {"name": menu.bl_idname})
 
 
-STOP = simulation.RIFFLER_OT_simulate_stop
-# No version of Blender uses these keys, except Esc, which is ours only during a simulation.
+STOP, PEN_STOP = simulation.RIFFLER_OT_simulate_stop, pen_operators.RIFFLER_OT_pen_stop
+# No version of Blender uses these keys, except Esc, which is ours only during a simulation, and a device's session.
 KEYS = (
     _menu("wm.call_menu_pie", panel.RIFFLER_MT_sculpt_pie, type="W", ctrl=True, shift=True),
     _menu("wm.call_menu", menus.RIFFLER_MT_object, type="W", ctrl=True, alt=True),
     Key("3D View", STOP.bl_idname, {"type": "ESC"}, STOP.bl_label, space="VIEW_3D"),
+    Key("3D View", PEN_STOP.bl_idname, {"type": "ESC"}, PEN_STOP.bl_label, space="VIEW_3D"),
 )
 CLASSES = ()
 _made = []  # (keymap, item)

@@ -52,7 +52,7 @@ SECTIONS = (
             "size_gizmo",
         ),
     ),
-    Section("pen", ("operators", "panel")),
+    Section("pen", ("operators", "trace", "panel")),
     Section(
         "stock",
         (

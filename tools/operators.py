@@ -29,7 +29,7 @@ TOPICS = {
                   "cut_curve", "cut_recording", "stroke_add_curves", "stroke_edit", "stroke_move", "stroke_remove",
                   "strokes_restore", "strokes_settle"],
     "Clay": ["resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
-    "Devices": ["pen_sculpt", "pen_stop", "pen_home", "pen_reset"],
+    "Devices": ["pen_sculpt", "pen_trace", "pen_stop", "pen_home", "pen_reset"],
     "Meshes and files": ["detail", "to_mesh", "show_deviation", "hide_deviation", "import_cad", "retessellate",
                          "export_stl", "export_3mf", "export_nc", "export_recording"],
     "Recovery and reports": ["recover", "discard_journal", "dismiss", "doctor"],

@@ -1,7 +1,8 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
 tools/tutorials.py [--suite sid] [NAME ...]      (all without NAME, which is as in tutorial_NAME.py; "session":
-                                                 docs/sessions.md, "cube": docs/first-chip.md; --suite: in the Blender
+                                                 docs/sessions.md, "trace": docs/cad.md, "cube":
+                                                 docs/first-chip.md; --suite: in the Blender
                                                  of a chroot of tools/blenders.py, for pictures of the newest)
 """
 
@@ -13,7 +14,7 @@ import shutil
 from shell import PYTHON, ROOT, StepError, main, run, say
 
 PLACE = ROOT / "docs" / "images" / "tutorials"
-ALSO = {"session": "window_pen", "cube": "window_cube"}  # pictures that a test takes as it runs
+ALSO = {"session": "window_pen", "trace": "window_trace", "cube": "window_cube"}  # pictures that a test takes as it runs
 
 
 def entry() -> None:

@@ -2,8 +2,9 @@
 
 import bpy
 
-from ..blender.panel_parts import Sidebar, give, lines, wrapped
+from ..blender.panel_parts import Sidebar, at_work, give, lines, wrapped
 from . import operators, properties
+from .trace import RIFFLER_OT_pen_trace
 
 WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
 
@@ -24,6 +25,9 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         else:
             op = layout.operator(operators.RIFFLER_OT_pen_sculpt.bl_idname, icon="STYLUS_PRESSURE")
             give(op, settings, properties.PenSettings)
+            if not at_work(layout, context, RIFFLER_OT_pen_trace):
+                op = layout.operator(RIFFLER_OT_pen_trace.bl_idname, icon="CURVE_PATH")
+                give(op, settings, properties.TraceSettings)
         self._settings(layout, context, settings, not state.sculpting)
 
     def _session(self, layout, context, state):
@@ -61,6 +65,7 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         column.prop(settings, "record")
         if settings.record:
             column.prop(settings, "folder")
+        column.prop(settings, "keep_trace")
 
 
 CLASSES = (RIFFLER_PT_pen,)

@@ -18,7 +18,7 @@ DEVICES = tuple(
 PREFERRED = "preferred"
 CHOICES = ((PREFERRED, "As in Preferences", "The device that Riffler's preferences name", "NONE", 0), *DEVICES)
 STARTS = (
-    ("ABOVE", "Above the Stock", "The tool stands upright above the middle of the stock when the session starts"),
+    ("ABOVE", "Above the Stock", "The tool stands upright above the middle of the stock, or part, at the start"),
     ("CURSOR", "3D Cursor", "The tool's tip stands upright at the 3D cursor when the session starts"),
 )
 
@@ -57,6 +57,20 @@ WHICH = StringProperty(
     "its name; empty: the first that opens",
 )
 TURN = EnumProperty(name="Axes", items=AXES, default="STOCK", description="How the hand's directions move the tool")
+RECORDED = StringProperty(
+    name="Recording", subtype="FILE_PATH", description="Recording (.rjournal) that plays as a device"
+)
+START = EnumProperty(
+    name="Start", items=STARTS, default="ABOVE", description="Position of the tool when the session starts"
+)
+GAP = length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
+TOUCH = BoolProperty(
+    name="Touch the Stock",
+    default=False,
+    description="Keep the tool out of the stock while button 1 is up, and push the hand back with 1.5 N at most: "
+    "force then acts without a button, also when a surface is traced",
+)
+STIFF = length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
 
 
 class TurningDevice:
@@ -79,23 +93,14 @@ class PenSettings:
 
     device: DEVICE
     which: WHICH
-    recording: StringProperty(
-        name="Recording", subtype="FILE_PATH", description="Recording (.rjournal) that plays as a device"
-    )
-    start: EnumProperty(
-        name="Start", items=STARTS, default="ABOVE", description="Position of the tool when the session starts"
-    )
-    gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
+    recording: RECORDED
+    start: START
+    gap: GAP
     scale: SCALE
     axes: TURN
     pivot: PIVOT
-    touch: BoolProperty(
-        name="Touch the Stock",
-        default=False,
-        description="Keep the tool out of the stock while button 1 is up, and push the hand back with 1.5 N at most: "
-        "force then acts without a button",
-    )
-    stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
+    touch: TOUCH
+    stiffness: STIFF
     removal_constant: FloatProperty(
         name="Resistance",
         default=0.005,
@@ -114,7 +119,27 @@ class PenSettings:
     )
 
 
-class RifflerPen(PenSettings, bpy.types.PropertyGroup):
+class TraceSettings:
+    """Settings of a session that traces an exact surface."""
+
+    device: DEVICE
+    which: WHICH
+    recording: RECORDED
+    start: START
+    gap: GAP
+    scale: SCALE
+    axes: TURN
+    pivot: PIVOT
+    touch: TOUCH
+    stiffness: STIFF
+    keep_trace: BoolProperty(
+        name="Keep Trace",
+        default=True,
+        description="Make a curve of the points of the surface that the tool has touched, when the session ends",
+    )
+
+
+class RifflerPen(PenSettings, TraceSettings, bpy.types.PropertyGroup):
     pass
 
 

@@ -8,17 +8,13 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 from riffler import cad
 
-from ..blender import attributes, meshes, operator_parts, preferences_access, refusals, scene_units
+from ..blender import attributes, exact_surfaces, meshes, operator_parts, refusals, scene_units
+from ..blender.exact_surfaces import FILE, NAMES, TOLERANCE
 from ..blender.fields import length
 from ..blender.file_work import FileWork
 from ..blender.long_work import LongWork
 from ..common import problems, units
 from ..common.job import TaskJob
-from .pure import cad_python
-
-# Properties of an imported mesh: the file, the chord tolerance in mm, and the names of the exact faces.
-FILE, TOLERANCE, NAMES = "riffler_cad_file", "riffler_cad_tolerance", "riffler_cad_faces"
-_found = {}  # Python that reads CAD files, by the user's choice; kept because the search takes a second
 
 
 class ReadCad(LongWork):
@@ -29,11 +25,8 @@ class ReadCad(LongWork):
 
     def read(self, path):
         problems.check_source(path)
-        chosen = preferences_access.cad_python()
-        if chosen not in _found:
-            _found[chosen] = cad_python.find(chosen)
         tolerance = units.clean(self.tolerance)
-        return TaskJob(riffler.submit(cad.read, path, tolerance=tolerance, python=_found[chosen]))
+        return TaskJob(riffler.submit(cad.read, path, tolerance=tolerance, python=exact_surfaces.python()))
 
     def fill(self, context, mesh, path, part):
         """Replaces the mesh's content with the part, in scene units, and reports what was mended."""

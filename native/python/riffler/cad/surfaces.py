@@ -9,12 +9,16 @@ import numpy as np
 from .._core import FormatError, Surface
 
 
-def surface_of(answer: dict[str, Any], arrays: dict[str, np.ndarray], name: str) -> Surface:
-    """Makes the surface from the reader's answer: a copy of every prototype's faces in each of its places."""
+def surface_of(
+    answer: dict[str, Any], arrays: dict[str, np.ndarray], name: str, place: np.ndarray | None = None
+) -> Surface:
+    """Makes the surface from the reader's answer: a copy of every prototype's faces in each of its places. ``place``
+    (4, 4): an affine map of the whole, which may scale and mirror it."""
     made = [_patches(arrays, k, p["patches"]) for k, p in enumerate(answer["prototypes"])]
     patches = []
+    whole = np.eye(4) if place is None else np.asarray(place, float)
     for instance in answer["instances"]:
-        matrix = np.array(instance["matrix"], float)
+        matrix = whole[:3] @ np.vstack([np.array(instance["matrix"], float), [0.0, 0.0, 0.0, 1.0]])
         patches += [_placed(patch, matrix) for patch in made[instance["prototype"]]]
     if not patches:
         raise FormatError(f"{name}: none of its faces has an area; export it again, as AP214 or AP242")

@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from addon.stock.pure import cad_python
+from addon.common import cad_python
 
 
 def test_the_first_that_has_the_packages_is_taken():
