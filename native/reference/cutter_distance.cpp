@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geom/hypot.hpp"
 
@@ -10,6 +11,10 @@ namespace riffler::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
 
 }  // namespace
 
@@ -20,9 +25,9 @@ class CutterDistance::Search {
 
   void add(const Edge& e) {
     const bool faced = e.arc ? add_arc(e) : add_line(e);
-    if (!faced) add_corner(e.from), add_corner(e.to);
+    if (!faced) add_corner(e.from, e.at_from), add_corner(e.to, e.at_to);
   }
-  Nearest found() const { return {inside_ ? -distance_ : distance_, normal_}; }
+  Nearest found() const { return {inside_ ? -distance_ : distance_, normal_, support_}; }
   bool on_corner() const { return on_corner_; }
 
  private:
@@ -48,17 +53,20 @@ class CutterDistance::Search {
   }
 
   void add_face(double distance, const Vec2& normal) {
-    if (distance < distance_) distance_ = distance, normal_ = normal, on_corner_ = false;
+    if (distance < distance_) distance_ = distance, normal_ = normal, support_ = normal, on_corner_ = false;
   }
 
   /// A corner's normal is the direction to the point, which rounding hides close by.
-  void add_corner(const Vec2& corner) {
+  void add_corner(const Vec2& corner, const Cone& cone) {
     const Vec2 to_point = p_ - corner;
     const double d = glm::length(to_point);
     if (d >= distance_) return;
     distance_ = d, on_corner_ = true;
     normal_.reset();
     if (d > 1e-7 * scale_) normal_ = to_point / (inside_ ? -d : d);
+    support_ = inside_ || cross(cone.first, to_point) <= 0 ? cone.first
+               : cross(to_point, cone.last) <= 0           ? cone.last
+                                                           : to_point / d;
   }
 
   Vec2 p_;
@@ -66,6 +74,7 @@ class CutterDistance::Search {
   double scale_;
   double distance_ = kInfinity;
   std::optional<Vec2> normal_;
+  Vec2 support_{0, 0};
   bool on_corner_ = false;
 };
 
@@ -85,15 +94,38 @@ CutterDistance::CutterDistance(const tool::Profile& profile)
     from = s.to;
   }
   edges_.push_back(edge(from, {0, from.y}, {}));
+  add_cones(edges_);
   convex_ = convex(edges_);
   if (convex_) return;
   for (const Edge& e : edges_)
     if (e.to.y > e.from.y) add_slices(e);
 }
 
+/// Sets the cones of an outline from the axis to the axis. Edges without a length have no normals of their own.
+void CutterDistance::add_cones(std::span<Edge> outline) {
+  const auto normal_at = [](const Edge& e, const Vec2& at) {
+    return e.arc ? (at - e.arc->centre) * (e.arc->side / e.arc->radius) : e.normal;
+  };
+  const auto mirrored = [](const Vec2& n) { return Vec2(-n.x, n.y); };  // beyond the axis
+  std::vector<std::pair<Vec2, Vec2>> normals;                           // at the ends of each edge with a length
+  std::vector<std::size_t> first;                                       // of those from this edge on
+  for (const Edge& e : outline) {
+    first.push_back(normals.size());
+    if (e.length > 0) normals.emplace_back(normal_at(e, e.from), normal_at(e, e.to));
+  }
+  const auto cone = [&](std::size_t k) {  // between edges k − 1 and k with a length
+    const Vec2 below = k > 0 ? normals[k - 1].second : mirrored(normals[0].first);
+    return Cone{below, k < normals.size() ? normals[k].first : mirrored(below)};
+  };
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    outline[k].at_from = cone(first[k]), outline[k].at_to = cone(first[k] + (outline[k].length > 0));
+}
+
 /// Adds one slice, or several under a hollow arc: the shorter the arc, the closer the slice is to its hull.
 void CutterDistance::add_slices(const Edge& e) {
-  const int parts = e.arc && e.arc->side < 0 ? 8 : 1;
+  const bool hollow = e.arc && e.arc->side < 0;
+  const int parts = hollow ? 8 : 1;
+  slices_convex_ = slices_convex_ && !hollow;
   Vec2 from = e.from;
   for (int k = 1; k <= parts; ++k) {
     Vec2 to = e.to;
@@ -103,6 +135,7 @@ void CutterDistance::add_slices(const Edge& e) {
     }
     slices_.push_back({edge({0, from.y}, from, {}), edge(from, to, e.arc ? std::optional(e.arc->centre) : std::nullopt),
                        edge(to, {0, to.y}, {})});
+    add_cones(slices_.back());
     from = to;
   }
 }
@@ -127,14 +160,16 @@ bool CutterDistance::convex(const std::vector<Edge>& edges) {
   return true;
 }
 
+/// Whether the point is between the axis and the edge.
+bool CutterDistance::inside(const Edge& e, double rho, double z) {
+  if (z < e.from.y || z >= e.to.y) return false;
+  if (!e.arc) return rho < e.from.x + (e.to.x - e.from.x) * (z - e.from.y) / (e.to.y - e.from.y);
+  const double up = z - e.arc->centre.y, r = e.arc->radius;
+  return rho < e.arc->centre.x + e.arc->side * std::sqrt(std::max(0.0, (r - up) * (r + up)));
+}
+
 bool CutterDistance::inside(double rho, double z) const {
-  for (const Edge& e : edges_) {
-    if (z < e.from.y || z >= e.to.y) continue;
-    if (!e.arc) return rho < e.from.x + (e.to.x - e.from.x) * (z - e.from.y) / (e.to.y - e.from.y);
-    const double up = z - e.arc->centre.y, r = e.arc->radius;
-    return rho < e.arc->centre.x + e.arc->side * std::sqrt(std::max(0.0, (r - up) * (r + up)));
-  }
-  return false;
+  return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& e) { return inside(e, rho, z); });
 }
 
 Nearest CutterDistance::nearest(double rho, double z) const {
@@ -143,10 +178,21 @@ Nearest CutterDistance::nearest(double rho, double z) const {
   return search.found();
 }
 
+/// Whether the whole cutter is behind the line through `foot`. A hollow arc is within the hull of its ends.
+bool CutterDistance::behind(const Vec2& foot, const Vec2& normal) const {
+  const auto reaches = [&](const Vec2& at) { return std::abs(normal.x) * at.x + normal.y * at.y; };  // on both sides
+  const double most = glm::dot(foot, normal) + 1e-14 * reach_;
+  return std::all_of(edges_.begin(), edges_.end(), [&](const Edge& e) {
+    const bool bulges = e.arc && e.arc->side > 0;
+    const double round = bulges ? reaches(e.arc->centre) + e.arc->radius : -kInfinity;
+    return std::max({reaches(e.from), reaches(e.to), round}) <= most;
+  });
+}
+
 Nearest CutterDistance::with_free_radius(double rho, double z, Nearest at) const {
   if (!at.normal) return at;
-  at.free_radius = convex_ ? kInfinity : 0;
   const Vec2 foot = Vec2(rho, z) - at.distance * *at.normal;
+  at.free_radius = convex_ || behind(foot, *at.normal) ? kInfinity : 0;
   // The ball about the point itself, up to the foot, is free; a hardly larger one would not help.
   const double least = std::max({1.05 * at.distance, -0.25 * at.distance, 1e-3 * reach_});
   for (double radius = 8 * reach_; at.free_radius == 0 && radius > least; radius *= 0.6) {
@@ -157,11 +203,12 @@ Nearest CutterDistance::with_free_radius(double rho, double z, Nearest at) const
 }
 
 Nearest CutterDistance::nearest_in_slice(std::size_t k, double rho, double z) const {
-  Search search({rho, z}, false, reach_);
+  const Edge& outside = slices_[k][1];
+  const bool within = inside(outside, rho, z);
+  Search search({rho, z}, within, reach_);
   for (const Edge& e : slices_[k]) search.add(e);
   Nearest at = search.found();
-  if (!at.normal) return at;
-  const Edge& outside = slices_[k][1];
+  if (!at.normal || within) return at;
   const bool hollow = outside.arc && outside.arc->side < 0;
   if (!hollow)
     at.free_radius = kInfinity;

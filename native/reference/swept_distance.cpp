@@ -71,8 +71,38 @@ SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double
   return {t, half, lower};
 }
 
+/// The bracket of a straight move; none inside a cutter that is not convex, and none for hollow arcs.
+std::optional<Bracket> SweptDistance::by_tangents(const Vec3& from_start, double gap, double below,
+                                                  double above) const {
+  if (motion_.angle() > 0 || !(cutter_->convex() || cutter_->slices_convex())) return {};
+  const Vec3 way = motion_.to().tip - motion_.from().tip;
+  const auto least = [&](const auto& nearest, double most) {
+    const auto tangent = [&](double t) {
+      const Place here = place(from_start, t);
+      const Nearest at = nearest(here.rho, here.z);
+      // On the axis any direction away from it will do.
+      const Vec3 radial = here.rho > 0 ? here.radial / here.rho : geom::any_perpendicular(here.axis);
+      return Tangent{t, at.distance, -glm::dot(at.support.x * radial + at.support.y * here.axis, way)};
+    };
+    return least_of_convex(tangent, gap, below, most);
+  };
+  if (cutter_->convex()) return least([&](double rho, double z) { return cutter_->nearest(rho, z); }, above);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Bracket all{kInfinity, kInfinity, 0};
+  for (std::size_t k = 0; k < cutter_->slices(); ++k) {
+    const auto in_slice = [&](double rho, double z) { return cutter_->nearest_in_slice(k, rho, z); };
+    const Bracket found = least(in_slice, std::min(above, all.upper));
+    all = {std::min(all.lower, found.lower), std::min(all.upper, found.upper), all.poses + found.poses};
+    if (found.upper >= 0) continue;
+    // No point is deeper in a slice than in the cutter.
+    return found.upper < below ? std::optional(Bracket{-kInfinity, found.upper, all.poses}) : std::nullopt;
+  }
+  return all;
+}
+
 Bracket SweptDistance::bracket(const Vec3& p, double gap, double below, double above) const {
   const Vec3 from_start = p - motion_.from().tip;
+  if (const auto found = by_tangents(from_start, gap, below, above)) return *found;
   double best = std::numeric_limits<double>::infinity();
   node(from_start, 0, 0, above, best);
   node(from_start, 1, 0, above, best);

@@ -5,18 +5,14 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "reference/convex_search.hpp"
 #include "reference/cutter_distance.hpp"
 #include "riffler/geom/pose.hpp"
 
 namespace riffler::reference {
-
-/// An interval that contains the smallest signed distance over the motion.
-struct Bracket {
-  double lower, upper;
-  int poses;  ///< at which the distance was evaluated
-};
 
 /// Global minimum over t by branch and bound. Over an interval of half-width h about t, with f the distance at t,
 /// L a bound on the speed at which the point moves in the tool's frame, A one on its acceleration there, and a ball of
@@ -26,6 +22,10 @@ struct Bracket {
 ///
 /// the second because the cutter is outside that ball, so the distance from the ball's outside bounds the
 /// cutter's distance from below. Unlike dense samples, this cannot miss a minimum.
+///
+/// On a straight move the distance from a convex cutter is a convex function of t, and two tangents give the bound
+/// (convex_search.hpp): 4 poses on average in the stress run. The same holds outside of a cutter of convex slices, for
+/// each slice.
 class SweptDistance {
  public:
   SweptDistance(const tool::Profile& profile, const Motion& motion)
@@ -60,6 +60,7 @@ class SweptDistance {
   struct Approach;
   Place place(const Vec3& from_start, double t) const;
   double by_slices(const Approach& approach, const Place& place, double best) const;
+  std::optional<Bracket> by_tangents(const Vec3& from_start, double gap, double below, double above) const;
   Node node(const Vec3& from_start, double t, double half, double above, double& best) const;
 
   std::shared_ptr<const CutterDistance> cutter_;

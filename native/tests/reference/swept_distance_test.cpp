@@ -146,8 +146,8 @@ TEST(SweptDistance, BracketsTheDistanceOfSamples) {
   Random random(7);
   for (const Tool& tool : tools()) {
     const CutterDistance cutter(tool.profile());
-    for (int k = 0; k < 60; ++k) {
-      const Vec3 a = glm::normalize(point(random, 1)), b = glm::normalize(point(random, 1));
+    for (int k = 0; k < 120; ++k) {
+      const Vec3 a = glm::normalize(point(random, 1)), b = k < 60 ? glm::normalize(point(random, 1)) : a;
       const Vec3 start = point(random, 4), end = start + (k % 3 ? point(random, 4) : Vec3(0));
       const Motion motion({start, a}, {end, b});
       const Vec3 p = start + point(random, 8);
@@ -193,6 +193,38 @@ TEST(SweptDistance, NeedsFewPoses) {
       poses += SweptDistance(tool.profile(), motion).bracket(start + point(random, 8), 1e-9).poses, ++queries;
     }
   EXPECT_LT(poses, 120 * queries);
+}
+
+TEST(SweptDistance, NeedsVeryFewPosesOnStraightMoves) {
+  Random random(13);
+  for (const Tool& tool : tools()) {
+    const CutterDistance cutter(tool.profile());
+    if (!cutter.convex() && !cutter.slices_convex()) continue;
+    long poses = 0;
+    constexpr int kQueries = 400;
+    for (int k = 0; k < kQueries; ++k) {
+      const Vec3 start = point(random, 4), axis = glm::normalize(point(random, 1));
+      const SweptDistance swept(tool.profile(), Motion({start, axis}, {start + point(random, 30), axis}));
+      const Bracket found = swept.bracket(start + point(random, 30), 1e-9, -1e-9, 1e9);
+      if (found.upper < 0) continue;  // inside a cutter that is not convex, the search is another one
+      EXPECT_LT(found.poses, 60);
+      poses += found.poses;
+    }
+    EXPECT_LT(poses, 10L * static_cast<long>(1 + cutter.slices()) * kQueries) << tool.kind();
+  }
+}
+
+/// A point that an edge passes within rounding has no gradient there, and neither have the poses before and after.
+TEST(SweptDistance, NeedsFewPosesWhereAnEdgeTouchesThePoint) {
+  const Vec3 level{0, 1, 0}, steep{0, 0.6, 0.8};
+  for (const Vec3& way : {level, steep}) {
+    const SweptDistance swept(cutters::flat(6, 0.3).profile(), Motion({-3.0 * way, {0, 0, 1}}, {3.0 * way, {0, 0, 1}}));
+    for (const double off : {0.0, 1e-16, -1e-16, 1e-12, 1e-9, 4e-8}) {
+      const Bracket found = swept.bracket({3 + off, 0, 0}, 1e-13);
+      EXPECT_LE(found.poses, 60) << off;
+      EXPECT_NEAR(found.upper, std::max(off, 0.0), 1e-13 - std::min(off, 0.0));
+    }
+  }
 }
 
 TEST(CutterDistance, OfAFlatCutterIsThatOfACylinder) {
@@ -245,6 +277,31 @@ TEST(CutterDistance, OfEveryCutterIsThatOfItsOutline) {
         if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y)) inside = !inside;
       }
       EXPECT_NEAR(cutter.distance(q.x, q.y), inside ? -nearest : nearest, step);
+    }
+  }
+}
+
+TEST(CutterDistance, SupportsHaveTheWholeConvexCutterBehindThem) {
+  Random random(14);
+  for (const Tool& tool : tools()) {
+    const CutterDistance cutter(tool.profile());
+    if (!cutter.convex()) continue;
+    const std::vector<Vec2> corners = outline(tool.profile(), 50);
+    for (int k = 0; k < 1000; ++k) {
+      Vec3 p = point(random, 10);
+      if (k % 2) {  // at a corner, or next to it
+        const Vec2& corner = corners[random() % corners.size()];
+        p = Vec3(corner.x, 0, corner.y - 6) + (k % 4 == 1 ? 0 : 1e-12) * p;
+      }
+      const double rho = std::abs(p.x), z = p.z + 6;
+      const Nearest at = cutter.nearest(rho, z);
+      EXPECT_NEAR(glm::length(at.support), 1, 1e-12);
+      const Vec2 foot = Vec2(rho, z) - at.distance * at.support;
+      for (const Vec2& q : corners)
+        for (const double side : {1.0, -1.0}) ASSERT_LT(glm::dot(Vec2(side * q.x, q.y) - foot, at.support), 1e-11);
+      if (at.normal) {
+        EXPECT_LT(glm::length(*at.normal - at.support), 1e-7);
+      }
     }
   }
 }
