@@ -91,7 +91,9 @@ def _answer(path, with_python, progress):
     key = (path, found.st_mtime_ns, found.st_size)
     if _read[0] != key:
         _read = (None, None)
-        read = reading.answer_to(path, reading.BORDERS, python=with_python, progress=progress, surfaces=True)
+        read = reading.answer_to(
+            path, reading.BORDERS, python=with_python, progress=progress, borders=reading.BORDERS, mesh=False
+        )
         _read = (key, read)
     return _read[1]
 

@@ -167,6 +167,23 @@ def test_trimmed_faces_have_opencascades_distances(files):
 
 
 @needs_occ
+def test_triangles_and_exact_faces_are_read_in_one_process(files, monkeypatch):
+    calls, run = [], riffler.cad.process.run
+    monkeypatch.setattr(riffler.cad.process, "run", lambda *arguments: calls.append(arguments) or run(*arguments))
+    part = riffler.cad.read(files / "assembly.step", tolerance=0.05, exact=True)
+    assert len(calls) == 1 and "convert" in part.report.seconds
+    plain, surface = (
+        riffler.cad.read(files / "assembly.step", tolerance=0.05),
+        riffler.Surface.read(files / "assembly.step"),
+    )
+    assert plain.mesh.vertices.tobytes() == part.mesh.vertices.tobytes()
+    assert plain.mesh.triangles.tobytes() == part.mesh.triangles.tobytes()
+    assert part.surface.names == surface.names == [face.name for face in part.faces]
+    points = np.add(part.mesh.vertices[::7], (0.3, -0.2, 0.1))
+    assert part.surface.closest(points)[2].tobytes() == surface.closest(points)[2].tobytes()
+
+
+@needs_occ
 def test_names_and_places_of_the_file_are_kept(files):
     surface, part = riffler.Surface.read(files / "assembly.step"), riffler.cad.read(files / "assembly.step")
     assert surface.names == [face.name for face in part.faces]

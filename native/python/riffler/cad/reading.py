@@ -55,7 +55,7 @@ def read(
         Chord error: largest distance of the exact faces from their triangles. `CadReport.deviation` is the measured
         distance; it is not proven.
     exact : bool
-        Also reads the exact faces, as `CadPart.surface`, in a second pass. `plan.Setup` then plans on them.
+        Also returns the exact faces, as `CadPart.surface`, of the same healed bodies. `plan.Setup` then plans on them.
     unit : str, optional
         Unit of the file's numbers, instead of the unit that the file states: "mm", "cm", "m", "inch", "foot" or
         "micrometre".
@@ -91,37 +91,17 @@ def read(
     >>> part.mesh.audit().open_edges, part.report.closed, part.report.unit
     (0, True, 'inch')
     """
-    name, before = Path(path).name, _stamp(path)
-    how: dict[str, Any] = {"unit": unit, "timeout": timeout, "python": python}
-    first = _share(progress, 0.0) if exact else progress
-    answer, arrays, schema = answer_to(path, tolerance, progress=first, surfaces=False, **how)
-    part = assemble(answer, arrays, name, schema, float(tolerance), unit)
-    if not exact:
-        return part
-    surface = read_surface(path, min(BORDERS, float(tolerance)), progress=_share(progress, 0.5), **how)
-    if _stamp(path) != before:
-        raise FormatError(f"{name}: the file has changed while it was read; read it again")
-    return replace(part, surface=surface)
+    borders = BORDERS if exact else None
+    how: dict[str, Any] = {"unit": unit, "timeout": timeout, "python": python, "progress": progress}
+    answer, arrays, schema = answer_to(path, tolerance, borders=borders, **how)
+    part = assemble(answer, arrays, Path(path).name, schema, float(tolerance), unit)
+    return replace(part, surface=surface_of(answer, arrays, Path(path).name)) if exact else part
 
 
 def read_surface(path: str | os.PathLike[str], tolerance: float, progress: Progress = None, **how: Any) -> Surface:
     """What `Surface.read` returns; ``how``: further arguments of `answer_to`."""
-    answer, arrays, _ = answer_to(path, tolerance, progress=progress, surfaces=True, **how)
+    answer, arrays, _ = answer_to(path, tolerance, borders=tolerance, mesh=False, progress=progress, **how)
     return surface_of(answer, arrays, Path(path).name)
-
-
-def _share(progress: Progress, first: float) -> Progress:
-    """The progress of one of two halves of a call."""
-    return None if progress is None else lambda share: progress(first + 0.5 * share)
-
-
-def _stamp(path: str | os.PathLike[str]) -> tuple[int, int] | None:
-    """Changes when the file does; None if there is none."""
-    try:
-        found = os.stat(path)
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size
 
 
 def answer_to(
@@ -132,10 +112,11 @@ def answer_to(
     timeout: float = TIMEOUT,
     python: str | os.PathLike[str] | None = None,
     progress: Progress = None,
-    surfaces: bool,
+    borders: float | None = None,
+    mesh: bool = True,
 ) -> tuple[dict[str, Any], dict[str, np.ndarray], str]:
-    """The reader's answer, its arrays, and the schema that the file states. With ``surfaces``, they are those of the
-    exact faces instead of triangles."""
+    """The reader's answer, its arrays, and the schema that the file states. With ``borders``, the tolerance of their
+    borders (mm), they have the exact faces, and with ``mesh`` the triangles."""
     path = Path(path)
     name = path.name
     kind = KINDS.get(path.suffix.lower())
@@ -154,7 +135,8 @@ def answer_to(
         "tolerance": float(tolerance),
         "unit_mm": UNITS[unit] if unit else None,
         "max_triangles": MOST_TRIANGLES,
-        "surfaces": surfaces,
+        "mesh": mesh,
+        "borders": None if borders is None else min(float(borders), float(tolerance)),
     }
     timeout = min(float(timeout), 1e7)
     answer, arrays = process.run(request, name, timeout, progress, process.interpreter(python))

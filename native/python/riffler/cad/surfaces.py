@@ -26,7 +26,7 @@ def surface_of(
 
 
 def _patches(arrays: dict[str, np.ndarray], k: int, records: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    points, knots, trims = arrays[f"points{k}"], arrays[f"knots{k}"], arrays[f"trims{k}"]
+    points, knots, trims = arrays[f"nets{k}"], arrays[f"knots{k}"], arrays[f"trims{k}"]
     at_point = at_knot = at_trim = 0
     found = []
     for record in records:

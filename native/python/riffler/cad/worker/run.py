@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .document import ContentError, Prototype, read_document
-from .healing import heal
+from .healing import Healed, heal
 from .surfaces import convert
 from .tessellation import tessellate
 
@@ -37,11 +37,16 @@ def _run(request: dict[str, Any], folder: Path, report: Report) -> dict[str, Any
     count = len(document.prototypes)
     for number, prototype in enumerate(document.prototypes):
         report("tessellate", 0.3 + 0.65 * number / count)
-        if request["surfaces"]:
-            prototypes.append(_surfaces(prototype, number, tolerance, scale, arrays))
-            continue
-        answer = _answer(prototype, number, tolerance, scale, arrays, seconds)
+        start = time.perf_counter()
+        healed = heal(prototype, tolerance)
+        seconds["heal"] = seconds.get("heal", 0.0) + time.perf_counter() - start
+        answer: dict[str, Any] = {}
         prototypes.append(answer)
+        if request["borders"]:
+            answer |= _surfaces(healed, number, request["borders"] / scale, scale, arrays, seconds)
+        if not request["mesh"]:
+            continue
+        answer |= _mesh(prototype, healed, number, tolerance, scale, arrays, seconds)
         triangles += document.copies(number) * len(arrays[f"triangles{number}"])
         if triangles > request["max_triangles"]:
             raise ContentError(
@@ -68,17 +73,7 @@ def _scaled(matrix: list[list[float]], scale: float) -> list[list[float]]:
 
 
 def _surfaces(
-    prototype: Prototype, number: int, tolerance: float, scale: float, arrays: dict[str, np.ndarray]
-) -> dict[str, Any]:
-    healed = heal(prototype, max(tolerance, 1e-3))
-    patches, made = convert(healed, tolerance)
-    made["points"][:, :3] *= scale
-    arrays.update({f"{name}{number}": array for name, array in made.items()})
-    return {"patches": patches}
-
-
-def _answer(
-    prototype: Prototype,
+    healed: Healed,
     number: int,
     tolerance: float,
     scale: float,
@@ -86,11 +81,25 @@ def _answer(
     seconds: dict[str, float],
 ) -> dict[str, Any]:
     start = time.perf_counter()
-    healed = heal(prototype, tolerance)
-    middle = time.perf_counter()
-    seconds["heal"] = seconds.get("heal", 0.0) + middle - start
+    patches, made = convert(healed, tolerance)
+    seconds["convert"] = seconds.get("convert", 0.0) + time.perf_counter() - start
+    made["nets"][:, :3] *= scale
+    arrays.update({f"{name}{number}": array for name, array in made.items()})
+    return {"patches": patches}
+
+
+def _mesh(
+    prototype: Prototype,
+    healed: Healed,
+    number: int,
+    tolerance: float,
+    scale: float,
+    arrays: dict[str, np.ndarray],
+    seconds: dict[str, float],
+) -> dict[str, Any]:
+    start = time.perf_counter()
     meshed = tessellate(healed, tolerance)
-    seconds["tessellate"] = seconds.get("tessellate", 0.0) + time.perf_counter() - middle
+    seconds["tessellate"] = seconds.get("tessellate", 0.0) + time.perf_counter() - start
     arrays[f"points{number}"] = meshed.points * scale
     arrays[f"triangles{number}"] = meshed.triangles
     arrays[f"faces{number}"] = meshed.face_of_triangle

@@ -27,8 +27,8 @@ DEEPEST = 14  # halvings of each of them
 
 
 def convert(healed: Healed, tolerance: float) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Returns a record for each face, and arrays whose rows the records use one after the other: points with weights
-    (n, 4), knots (n,), and borders (n, 2)."""
+    """Returns a record for each face, and arrays whose rows the records use one after the other: nets of points with
+    weights (n, 4), knots (n,), and borders (n, 2)."""
     records: list[dict[str, Any]] = []
     points: list[np.ndarray] = []
     knots: list[np.ndarray] = []
@@ -48,7 +48,7 @@ def convert(healed: Healed, tolerance: float) -> tuple[list[dict[str, Any]], dic
             trims += loops
             records.append({"name": face.name, "color": face.color or body.color, **record})
     arrays = {
-        "points": np.concatenate(points) if points else np.zeros((0, 4)),
+        "nets": np.concatenate(points) if points else np.zeros((0, 4)),
         "knots": np.concatenate(knots) if knots else np.zeros(0),
         "trims": np.concatenate(trims) if trims else np.zeros((0, 2)),
     }
