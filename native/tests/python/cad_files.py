@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_Copy,
     BRepBuilderAPI_MakeEdge,
@@ -175,6 +175,9 @@ def main(folder):
     step(box, folder / "box.step")
     step(box, folder / "inch.stp", "INCH")
     step(BRepPrimAPI_MakeCylinder(5, 20).Shape(), folder / "cylinder.step")
+    plate = BRepPrimAPI_MakeBox(gp_Pnt(-15, -15, -5), gp_Pnt(15, 15, 0)).Shape()
+    boss = BRepAlgoAPI_Fuse(plate, BRepPrimAPI_MakeCylinder(8, 9).Shape()).Shape()
+    step(boss, folder / "boss.step")
     step(BRepPrimAPI_MakeSphere(7).Shape(), folder / "sphere.step")
     step(BRepPrimAPI_MakeCone(7, 0, 9).Shape(), folder / "cone.step")
     step(BRepPrimAPI_MakeTorus(20, 8).Shape(), folder / "torus.step")

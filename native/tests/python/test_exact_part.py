@@ -94,6 +94,27 @@ def test_plans_of_a_file_are_on_its_exact_faces(files, tmp_path):
 
 
 @needs_occ
+def test_pencil_paths_of_the_command_line_touch_the_exact_faces(files, tmp_path):
+    """Around a boss of radius 8 mm on the plane z = 0: the centre of a ball of radius 2 is at radius 10 and z = 2."""
+    command = [sys.executable, "-m", "riffler", "plan", "pencil", str(files / "boss.step"), "--tool", "ball:4"]
+    off = {}
+    for name, more in (("plain", []), ("exact", ["--exact"])):
+        out = tmp_path / f"{name}.json"
+        done = subprocess.run([*command, *more, "--out", str(out)], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        (path,) = riffler.plan.load(out).paths
+        off[name] = max(abs(np.hypot(*path.centres[:, :2].T) - 10).max(), abs(path.centres[:, 2] - 2).max())
+        assert ("on exact faces" in done.stdout + done.stderr) == bool(more)
+    assert off["plain"] > 1e-4 and off["exact"] < 1e-6, off
+    (tmp_path / "a.stl").write_bytes(b"solid a\nendsolid a\n")
+    done = subprocess.run(
+        [*command[:5], str(tmp_path / "a.stl"), *command[6:], "--exact", "--out", str(tmp_path / "b.json")],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode != 0 and "--exact: a.stl has triangles only" in done.stderr
+
+
+@needs_occ
 @pytest.mark.parametrize(
     ("name", "distance"),
     [

@@ -202,7 +202,7 @@ def summary(op: plan.Operation) -> dict[str, Any]:
     }
 
 
-def _exact(fit: dict[str, Any] | None) -> list[tuple[str, str]]:
+def exact_rows(fit: dict[str, Any] | None) -> list[tuple[str, str]]:
     if fit is None:
         return []
     error = f"{number(fit['before'], 'mm')} off before, {number(fit['after'], 'mm')} after"
@@ -221,7 +221,7 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
         ("points", number(data["poses"])),
         ("cut", f"{number(data['cut_mm'], 'mm')}, {number(data['air_mm'], 'mm')} at feed in air"),
         *_links(data["stats"]),
-        *_exact(data["exact"]),
+        *exact_rows(data["exact"]),
         ("time", number(data["time_s"] / 60, "min")),
         *(("blocked", f"{number(b['length'], 'mm')}: {b['reason']}") for b in data["blocked"]),
         ("file", number(data["bytes"], "bytes")),

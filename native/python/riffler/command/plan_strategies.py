@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from .. import plan
+from .. import Mesh, Surface, plan
 from ..formats import PARTS
 from ..plan import curves
+from ..plan.exact_path import fit_path, total_fit
+from ..plan.setups import deviation_of
 from . import tools
 from .arguments import A_PART, PLANS, finite, input_file, length, output_file, whole
 from .console import Console, number, times
 from .parser import Parser
-from .shapes import read_part
+from .plan_operation import add_exact, exact_rows
+from .shapes import read_exact, read_part
 
 GIVEN = {  # further input of a strategy, in addition to part and tool: help, file suffixes and names of its option
     "curves": (
@@ -50,6 +54,8 @@ class StrategyCommand:
             parser.offer(needs, (), suffixes)
         for parameter in self.strategy.parameters:
             add_option(parser, parameter)
+        if strategy_is_exact(self.strategy):
+            add_exact(parser)
         parser.add_file("--out", ".json", PLANS, required=True)
 
     def run(self, arguments: argparse.Namespace, console: Console) -> int:
@@ -64,7 +70,8 @@ class StrategyCommand:
         )
         out = output_file(arguments.out, PLANS)
         with console.step("read"):
-            mesh = read_part(path, console, hollow=True)
+            whole = read_exact(path, console) if getattr(arguments, "exact", False) else None
+            mesh = read_part(path, console, hollow=True) if whole is None else whole.mesh
             given, tool = read_given(strategy.needs, source)
         if asked is not None:
             lower, upper = mesh.bounds
@@ -74,11 +81,28 @@ class StrategyCommand:
                 found = plan.find(strategy.id, mesh, tool, given, name=path.name, progress=progress, **options)
             except ValueError as error:
                 raise ValueError(f"{path.name}: {error}") from None
+        fit = None
+        if whole is not None and whole.surface is not None:
+            with console.step("exact faces"):
+                found, fit = fitted(found, mesh, whole.surface)
         with console.step("write"), console.writing(out) as beside:
             plan.save(beside, found.plan)
-        data = summary(found, path, out, source) | {"seconds": console.seconds}
+        data = summary(found, path, out, source) | {"exact": fit, "seconds": console.seconds}
         console.result(data, f"{out.name} written", rows(data))
         return 0
+
+
+def strategy_is_exact(strategy: plan.Strategy) -> bool:
+    """Whether its paths can be moved onto exact faces: those of balls that touch two of them."""
+    return strategy.id == "pencil"
+
+
+def fitted(found: plan.Found, mesh: Mesh, exact: Surface) -> tuple[plan.Found, dict[str, Any]]:
+    """The paths with their centres one radius from both exact faces, and what `ExactFit` says of that."""
+    deviation, tolerance = deviation_of(mesh, exact), found.plan.tolerance or 0.0
+    made = [fit_path(path, exact, deviation, tolerance) for path in found.plan.paths]
+    paths = replace(found.plan, paths=[path for path, _ in made])
+    return replace(found, plan=paths), asdict(total_fit([fit for _, fit in made]))
 
 
 def add_option(parser: Parser, parameter: plan.Parameter) -> None:
@@ -148,6 +172,7 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
         ("paths", f"{number(data['paths'])}{loops}" + (f": {data['reason']}" if data["reason"] else "")),
         ("points", number(data["points"])),
         ("length", number(data["length"], "mm")),
+        *exact_rows(data.get("exact")),
         ("tool", f"{data['tool']['name']}, paths to {data['tolerance']:g} mm"),
         *(("note", note) for note in data.get("notes", ())),
         ("file", number(data["bytes"], "bytes")),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import PencilPath, Surface
+from .operations import ExactFit
 
 ROUNDS = 60
 CONVERGED = 1e-9  # mm, along the normals
@@ -72,6 +73,19 @@ def fit_path(path: PencilPath, exact: Surface, deviation: float, tolerance: floa
     out = PencilPath(path.radius, *_rows(found), closed=path.closed)
     after = float(found.after[found.good].max(initial=0.0))
     return out, PathFit(int(found.good.sum()), inserted, int((~found.good).sum()), before, after)
+
+
+def total_fit(fits: list[PathFit], raised: int = 0) -> ExactFit:
+    """The sum of the fits of several paths."""
+    return ExactFit(
+        fitted=sum(fit.fitted for fit in fits),
+        inserted=sum(fit.inserted for fit in fits),
+        raised=raised,
+        kept=sum(fit.kept for fit in fits),
+        before=max((fit.before for fit in fits), default=0.0),
+        after=max((fit.after for fit in fits), default=0.0),
+        kept_depth=0.0,
+    )
 
 
 def _rows(places: _Places) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from .._core import Collider, Mesh, Tool
 from ..arguments import Progress
 from ..hints import hinted
-from .exact_path import PathFit, fit_path
+from .exact_path import PathFit, fit_path, total_fit
 from .locations import cutter_locations
-from .operations import Blocked, ExactFit, Operation
+from .operations import Blocked, Operation
 from .path_order import order_paths
 from .posed import along_poses
 from .rest import inside, rest_region
@@ -132,7 +132,7 @@ def pencil_operation(
         blocked=blocked,
         reason="" if cuts else reason,
         stats={"paths": len(found)},
-        exact=None if setup.exact is None else _total(fits, raised),
+        exact=None if setup.exact is None else total_fit(fits, raised),
     )
 
 
@@ -146,15 +146,3 @@ def _collider(setup: Setup) -> Collider:
             "fixtures: a pencil cut on exact faces needs them as volumes; make them with riffler.Volume.from_mesh"
         )
     return Collider(setup.exact, fixtures=volumes, spacing=FORCE_SPACING)
-
-
-def _total(fits: list[PathFit], raised: int) -> ExactFit:
-    return ExactFit(
-        fitted=sum(fit.fitted for fit in fits),
-        inserted=sum(fit.inserted for fit in fits),
-        raised=raised,
-        kept=sum(fit.kept for fit in fits),
-        before=max((fit.before for fit in fits), default=0.0),
-        after=max((fit.after for fit in fits), default=0.0),
-        kept_depth=0.0,
-    )

@@ -94,7 +94,7 @@ class Setup:
         self.exact = exact
         self.deviation = 0.0
         if exact is not None:
-            self.deviation = _deviation(part, exact) if deviation is None else deviation
+            self.deviation = deviation_of(part, exact) if deviation is None else deviation
         self._collider: Collider | None = None
         self._obstacles = [one.to_mesh() if isinstance(one, Volume) else one for one in self.fixtures]
 
@@ -222,7 +222,7 @@ def _unit(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return out
 
 
-def _deviation(part: Mesh, exact: Surface) -> float:
+def deviation_of(part: Mesh, exact: Surface) -> float:
     """Largest distance of the part's triangles from the exact surface, mm, at their middles, corners and the middles of
     their sides. ValueError if they are not of the same part."""
     rows = np.asarray(part.triangles)
