@@ -126,7 +126,7 @@ TEST(CornerNormals, ChangeInPatchesNextToAChange) {
   for (const double depth : {0.2, 0.005})
     for (const double tolerance : {0.0, 0.1})
       for (int n = 0; n < 12; ++n) {
-        Volume volume = Volume::block({{{0, 0, 0}, {20, 8, 5}}, 0.25, n % 2 ? "xyz" : "z"});
+        Volume volume = Volume::block({{{0, 0, 0}, {11, 4, 5}}, 0.25, n % 2 ? "xyz" : "z"});
         Followed followed(volume, tolerance);
         const double radius = 6, reach = std::sqrt(radius * radius - (radius - depth) * (radius - depth));
         const Pose at{{8.6 - reach - 0.2 * n, 0.5, 5 - depth}, {0, 0, 1}};
@@ -144,10 +144,10 @@ TEST(CornerNormals, NextToABrickWithAVertexAndNoTriangles) {
   for (const double tolerance : {0.0, 0.01})
     for (int n = 27; n < 36; ++n) {
       const double h = 0.25, from = n * h + 0.1;
-      Volume volume({{{0, 0, 0}, {16, 16, 16}}, h, "xyz"});
+      Volume volume({{{0, 0, 0}, {11, 11, 11}}, h, "xyz"});
       fill(volume, [&](const dexel::Grid& grid, int i, int j) {
         const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0));
-        return box(Vec3(from), Vec3(14.1))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
+        return box(Vec3(from), Vec3(10.1))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
       });
       const MeshState state(volume, true, {});
       for (const std::size_t k : state.active_bricks())
