@@ -188,7 +188,8 @@ AdaptiveState::Result AdaptiveState::Turns::result(const Layer& layer, std::size
 }
 
 bool AdaptiveState::Turns::gather_border(const Vec3i& at, int group, GroupInput& input) const {
-  std::vector<BorderFace> faces;
+  std::vector<BorderFace>& faces = input.faces;
+  VertexNumbers numbers(input.names);
   for (int side = 0; side < 8; ++side) {
     input.begin[side] = static_cast<std::uint32_t>(faces.size());
     const Vec3i other = at + offset_of(side);
@@ -197,18 +198,15 @@ bool AdaptiveState::Turns::gather_border(const Vec3i& at, int group, GroupInput&
     for (const std::uint32_t place : state_.groups_.border(n).around(side, group)) {
       BorderFace& face = faces.emplace_back(borders_[n]->faces[place]);
       if (face.removed) continue;
-      for (VertexName& v : face.v) input.names.push_back(v = v.seen_from(-offset_of(side)));
+      for (VertexName& v : face.v) numbers.add(v = v.seen_from(-offset_of(side)));
     }
   }
   input.begin[8] = static_cast<std::uint32_t>(faces.size());
   if (input.names.empty()) return false;
-  base::sort_unique(input.names);
-  const auto number = [&](const VertexName& v) {
-    return static_cast<std::int32_t>(std::lower_bound(input.names.begin(), input.names.end(), v) - input.names.begin());
-  };
+  numbers.finish();
   for (const BorderFace& face : faces) {
-    input.triangles.push_back(face.removed ? Vec3i(-1)
-                                           : Vec3i(number(face.v[0]), number(face.v[1]), number(face.v[2])));
+    Vec3i& t = input.triangles.emplace_back(-1);
+    for (int c = 0; c < 3 && !face.removed; ++c) t[c] = numbers.of(face.v[static_cast<std::size_t>(c)]);
     input.errors.push_back(face.error);
   }
   for (const VertexName& v : input.names)
@@ -266,24 +264,24 @@ void AdaptiveState::Turns::gather_plain(std::size_t brick, GroupInput& input) co
   const ActiveBrick& active = *bricks_.active(brick);
   const std::vector<BorderFace>& faces = borders_[brick]->faces;
   const FlatSquare& square = flat_square();
+  VertexNumbers numbers(input.names);
   for (const BorderFace& face : faces)
-    if (!face.removed) input.names.insert(input.names.end(), face.v.begin(), face.v.end());
+    for (std::size_t c = 0; c < 3 && !face.removed; ++c) numbers.add(face.v[c]);
   for (const std::uint32_t v : square.vertices) input.names.push_back({Vec3i(0), v});
-  base::sort_unique(input.names);
+  numbers.finish();
   for (const VertexName& v : input.names)
     input.vertices.push_back(state_.surface_.mesh.vertices[static_cast<std::size_t>(state_.number(active.at, v))]);
-  const auto number = [&](const VertexName& v) {
-    return static_cast<std::int32_t>(std::lower_bound(input.names.begin(), input.names.end(), v) - input.names.begin());
-  };
   for (const BorderFace& face : faces) {
     if (face.removed) continue;
-    input.triangles.push_back({number(face.v[0]), number(face.v[1]), number(face.v[2])});
+    Vec3i& t = input.triangles.emplace_back();
+    for (int c = 0; c < 3; ++c) t[c] = numbers.of(face.v[static_cast<std::size_t>(c)]);
     input.errors.push_back(face.error);
   }
   // From u to v is clockwise seen from the end of the second axis, because the first and the third are then u and v.
   const bool swapped = (active.plain->axis == 1) != active.plain->rising;
   for (const auto& t : square.triangles) {
-    const std::int32_t a = number({Vec3i(0), t[0]}), b = number({Vec3i(0), t[1]}), c = number({Vec3i(0), t[2]});
+    const std::int32_t a = numbers.of({Vec3i(0), t[0]}), b = numbers.of({Vec3i(0), t[1]}),
+                       c = numbers.of({Vec3i(0), t[2]});
     input.triangles.push_back(swapped ? Vec3i(a, c, b) : Vec3i(a, b, c));
     input.errors.push_back(0);
   }

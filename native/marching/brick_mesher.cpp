@@ -160,6 +160,11 @@ class BrickMesher {
       const int k = std::countr_zero(mixed) - Neighbourhood::kLayers;
       const CellCase& entry = signs_->entry(table_, i, j, k);
       const int crossed = entry.crossed;
+      if (is_left_out(i, j, k)) {
+        numbers.take(k, entry.cycles);
+        for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
+        continue;
+      }
       const std::uint32_t edge[12] = {cursor[0],
                                       cursor[1],
                                       cursor[0] + (crossed & 1),
@@ -175,8 +180,7 @@ class BrickMesher {
       const bool own = i >= 0 && j >= 0 && k >= 0;
       const std::int32_t number = numbers.take(k, entry.cycles);
       siblings_.places.clear(), siblings_.left = false;
-      for (int c = 0; c < entry.cycles && !is_left_out(i, j, k); ++c)
-        place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
+      for (int c = 0; c < entry.cycles; ++c) place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
       for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
     }
   }

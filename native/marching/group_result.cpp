@@ -5,7 +5,7 @@
 namespace riffler::marching {
 
 void GroupInput::clear() {
-  vertices.clear(), triangles.clear(), errors.clear(), names.clear(), movable.clear();
+  vertices.clear(), triangles.clear(), errors.clear(), names.clear(), movable.clear(), faces.clear();
   begin = {};
 }
 

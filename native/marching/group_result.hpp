@@ -1,12 +1,14 @@
 // What the simplification of one group of vertices reads and what it leaves.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "base/mix.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/vertex_groups.hpp"
 #include "mesh/decimate/star_collapse.hpp"
 
@@ -31,6 +33,7 @@ struct Digest {
 /// vertices of a brick's surroundings come in the order of a new mesh, wherever their bricks are stored.
 class VertexName {
  public:
+  /// Names no vertex.
   VertexName() = default;
   /// `offset`: of the vertex's brick, −1 … 1 along each axis.
   VertexName(const Vec3i& offset, std::size_t local)
@@ -51,7 +54,43 @@ class VertexName {
   static constexpr int kLocalBits = 17;
   int place() const { return static_cast<int>(bits_ >> kLocalBits); }
 
-  std::uint32_t bits_ = 0;
+  std::uint32_t bits_ = ~std::uint32_t{0};
+};
+
+/// Numbers the vertices of triangles from 0 in the order of their names. Triangles next to each other in a list have
+/// most vertices in common, so the last few are looked at first.
+class VertexNumbers {
+ public:
+  /// `names`: filled by add() and finish().
+  explicit VertexNumbers(std::vector<VertexName>& names) : names_(names) {}
+
+  void add(const VertexName& v) {
+    if (std::find(recent_.begin(), recent_.end(), v) != recent_.end()) return;
+    remember(v);
+    names_.push_back(v);
+  }
+  /// Call it after the last add() and before the first of().
+  void finish() {
+    base::sort_unique(names_);
+    recent_.fill(VertexName());
+  }
+  /// The number of a name that was added.
+  std::int32_t of(const VertexName& v) {
+    const auto found = std::find(recent_.begin(), recent_.end(), v);
+    if (found != recent_.end()) return number_[found - recent_.begin()];
+    const auto number = static_cast<std::int32_t>(std::lower_bound(names_.begin(), names_.end(), v) - names_.begin());
+    number_[next_] = number;
+    remember(v);
+    return number;
+  }
+
+ private:
+  void remember(const VertexName& v) { recent_[next_] = v, next_ = (next_ + 1) % recent_.size(); }
+
+  std::vector<VertexName>& names_;
+  std::array<VertexName, 4> recent_{};
+  std::array<std::int32_t, 4> number_{};
+  std::size_t next_ = 0;
 };
 
 /// A triangle near a border between bricks. Its vertices are named relative to the triangle's brick.
@@ -68,6 +107,7 @@ struct GroupInput {
   mesh::Triangles triangles;  // −1: removed
   base::BulkVector<float> errors;
   std::vector<VertexName> names;         // of the vertices, relative to the group's brick; ascending
+  std::vector<BorderFace> faces;         // the triangles of a border, for its gathering only
   std::vector<std::uint8_t> movable;     // the vertices that belong to the group and are not fixed
   std::array<std::uint32_t, 9> begin{};  // of the triangles by side of their brick
   Digest digest;

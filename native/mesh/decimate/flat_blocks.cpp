@@ -10,6 +10,7 @@ namespace riffler::mesh {
 namespace {
 
 constexpr std::ptrdiff_t kFewest = 12;    // vertices of a block
+constexpr std::ptrdiff_t kSamples = 16;   // of its vertices, looked at first
 constexpr double kParallel = 1 - 5e-7;    // cosine of a flat block's normals
 constexpr double kFlatShare = 1.0 / 256;  // thickness of a flat block over the tolerance
 
@@ -34,6 +35,10 @@ void StarCollapser::flatten(std::int32_t* begin, std::int32_t* end) {
 /// Whether all faces around the block's vertices lie in one plane, nearly.
 bool StarCollapser::is_flat(const std::int32_t* begin, const std::int32_t* end, Flat& flat) {
   const Vec3 first = faces_[around(*begin)[0]].normal;
+  // Most blocks that are not flat show it at a few vertices.
+  const std::ptrdiff_t step = (end - begin) / kSamples + 1;
+  for (const std::int32_t* s = end - 1; s > begin; s -= std::min(step, s - begin))
+    if (!(glm::dot(faces_[around(*s)[0]].normal, first) > kParallel)) return false;
   Vec3 sum(0);
   float error = 0;
   inside_.clear();
