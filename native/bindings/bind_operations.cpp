@@ -7,12 +7,12 @@
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "riffler/plan/cc_frame.hpp"
+#include "riffler/plan/clear_of_stock.hpp"
 #include "riffler/plan/cut_along.hpp"
 #include "riffler/plan/finish.hpp"
 #include "riffler/plan/outline.hpp"
 #include "riffler/plan/rough.hpp"
 #include "riffler/plan/surface_fit.hpp"
-#include "riffler/sweep/carve.hpp"
 
 namespace riffler::bindings {
 
@@ -23,6 +23,7 @@ namespace {
 using namespace py::literals;
 
 constexpr double kPlanned = 0.85;  // of the progress
+constexpr double kGreater = 1.5;   // factor on the deviation of triangles, which is measured, not proven
 
 /// The operation, its counts, and what each of its moves takes off the stock, mm³.
 struct Planned {
@@ -137,23 +138,17 @@ std::optional<plan::AxisRule> to_rule(const std::optional<std::string>& kind, do
   return rule;
 }
 
-/// Plans with plan(scene, progress), and carves a copy of the stock with what comes of it.
+/// Plans with plan(scene, progress), and leaves out where shank or holder would touch the stock as it then is.
 template <class Plan>
 auto operation(const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures,
                SharedVolume& stock, const Tool& tool, const ArrayLike& axis, double clearance,
-               const ProgressLike& progress, const Plan& plan_it) {
+               const plan::StockRule& rule, const ProgressLike& progress, const Plan& plan_it) {
   auto scene = std::make_shared<plan::SetupScene>(plan::SetupScene{
       *part, {}, Reading(stock).volume.snapshot(), plan::unit_axis(to_vec3(axis, "axis"), "axis"), clearance});
   for (const auto& one : fixtures) scene->fixtures.push_back(*one);
   const auto work = [=](const Progress& listener) {
     Planned out = planned(plan_it(*scene, base::part(listener, 0, kPlanned)));
-    if (!out.operation.poses.empty()) {
-      Volume left = scene->stock.snapshot();
-      sweep::CarveOptions how;
-      const Progress rest = base::part(listener, kPlanned, 1);
-      how.progress = rest;
-      out.removed = sweep::carve(left, tool, out.operation.poses, how).removed;
-    }
+    out.removed = plan::clear_of_stock(*scene, tool, out.operation, rule, base::part(listener, kPlanned, 1));
     return out;
   };
   return long_call(progress, work, &from_planned);
@@ -179,7 +174,9 @@ void bind_operations(py::module_& m) {
         options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
         options.plunge = plunge, options.faces = faces, options.climb = climb, options.lead = lead;
         if (centre) options.centre = to_vec3(*centre, "centre");
-        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+        const double nearest = allowance - kGreater * deviation;
+        const plan::StockRule apart{plan::StockRule::After::Resume, 0, tolerance, nearest, allowance, plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, apart, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return finished(scene, tool, options, exact.value_or(nullptr), deviation, listener);
                          });
@@ -196,7 +193,9 @@ void bind_operations(py::module_& m) {
          const ProgressLike& progress) {
         tool.require_revolved("plan.rough");
         const plan::RoughOptions options{stepdown, engagement, allowance, tolerance, slope, climb, feed, plunge, depth};
-        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+        const plan::StockRule apart{
+            plan::StockRule::After::Leave, tool.diameter(), tolerance, allowance, allowance, plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, apart, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::rough(scene, tool, options, listener);
                          });
@@ -226,7 +225,9 @@ void bind_operations(py::module_& m) {
                                            feed,
                                            plunge,
                                            lead};
-        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+        const plan::StockRule apart{
+            plan::StockRule::After::Leave, tool.diameter(), tolerance, allowance, allowance, plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, apart, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::outline(scene, tool, options, listener);
                          });
@@ -245,7 +246,9 @@ void bind_operations(py::module_& m) {
         std::vector<plan::CutLine> cuts;
         for (const py::handle line : lines)
           cuts.push_back({to_poses(py::cast<Doubles>(line), ("lines[" + std::to_string(cuts.size()) + "]").c_str())});
-        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+        const plan::StockRule apart{plan::StockRule::After::Resume,      0,     tolerance, distance,
+                                    fixture_distance.value_or(distance), plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, apart, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::cut_along(scene, tool, cuts, options, listener);
                          });
@@ -253,6 +256,20 @@ void bind_operations(py::module_& m) {
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "lines"_a,
       "distance"_a, "fixture_distance"_a, "tolerance"_a, "max_lift"_a, "feed"_a, "plunge"_a, "progress"_a,
       "For riffler.plan.along_poses.");
+  m.def(
+      "clear_passes",
+      [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
+         const Tool& tool, const ArrayLike& axis, double clearance, const Doubles& poses,
+         const std::vector<std::uint8_t>& kinds, const std::vector<double>& feeds, double tolerance,
+         const ProgressLike& progress) {
+        plan::Operation moves{to_poses(poses, "poses"), {}, feeds, {}, {}};
+        for (const std::uint8_t kind : kinds) moves.kinds.push_back(static_cast<plan::MoveKind>(kind));
+        const plan::StockRule apart{plan::StockRule::After::Whole, 0, tolerance};
+        return operation(part, fixtures, stock, tool, axis, clearance, apart, progress,
+                         [=](const plan::SetupScene&, const Progress&) { return Planned{moves, {}, {}, {}}; });
+      },
+      "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "poses"_a,
+      "kinds"_a, "feeds"_a, "tolerance"_a, "progress"_a, "For riffler.plan.upright.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

@@ -13,7 +13,7 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNoAngle = std::numeric_limits<double>::infinity();
 constexpr double kMapped = 0.9;  // fraction of the work spent on the maps
 
 /// The free nodes of one point's map.
@@ -28,7 +28,7 @@ struct LayerCosts {
   std::vector<std::size_t> from;
 
   bool reached() const {
-    return std::any_of(cost.begin(), cost.end(), [](double c) { return c < kNever; });
+    return std::any_of(cost.begin(), cost.end(), [](double c) { return c < kNoAngle; });
   }
 };
 
@@ -49,13 +49,13 @@ class Chain {
   LayerCosts only(std::size_t k, std::size_t i) const {
     LayerCosts out = first(k);
     for (std::size_t j = 0; j < out.cost.size(); ++j)
-      if (j != i) out.cost[j] = kNever;
+      if (j != i) out.cost[j] = kNoAngle;
     return out;
   }
   LayerCosts next(const LayerCosts& before, std::size_t k) const {
     const Layer &a = layer(k - 1), &b = layer(k);
     const double least = base::cos(std::min(rule_.max_change, 3.2)) - 1e-12;
-    LayerCosts out{std::vector<double>(b.axes.size(), kNever), std::vector<std::size_t>(b.axes.size(), 0)};
+    LayerCosts out{std::vector<double>(b.axes.size(), kNoAngle), std::vector<std::size_t>(b.axes.size(), 0)};
     for (std::size_t j = 0; j < b.axes.size(); ++j) {
       for (std::size_t i = 0; i < a.axes.size(); ++i) {
         if (!(before.cost[i] < out.cost[j]) || glm::dot(a.axes[i], b.axes[j]) < least) continue;
@@ -105,7 +105,7 @@ std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
   std::rotate(starts.begin(), std::find(starts.begin(), starts.end(), middle), starts.end());
   for (const std::size_t start : starts) {
     const std::vector<LayerCosts> round = chain.run(chain.only(0, start), n + 1);
-    if (round.size() == n + 1 && round.back().cost[start] < kNever) return Chain::trace(round, start);
+    if (round.size() == n + 1 && round.back().cost[start] < kNoAngle) return Chain::trace(round, start);
   }
   return {};
 }

@@ -81,7 +81,7 @@ double depth_below_tip(const Tool& tool, double tilt) {
 
 PoseLeads::PoseLeads(const LeadScene& scene, const Tool& tool)
     : scene_(scene), tool_(tool), widens_(widens(tool, true)), body_widens_(widens(tool, false)) {
-  if (!scene.stock) return;
+  if (!scene.stock || !scene.check_stock) return;
   if (const auto body = body_of(tool)) body_.emplace(body->first), body_height_ = body->second;
 }
 

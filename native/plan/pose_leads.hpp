@@ -19,6 +19,7 @@ struct LeadScene {
   double distance, tolerance;                   ///< of all of the tool from `part`, mm: see CutAlongOptions
   const collide::Collider* fixtures = nullptr;  ///< null: `part` has them, or there are none
   double fixture_distance = 0;                  ///< of all of the tool from `fixtures`, mm
+  bool check_stock = true;                      ///< whether shank and holder must stay clear of `stock`
 };
 
 /// Pieces of shank and holder as a tool whose tip is the lower end of the lowest piece, and the height of that end;

@@ -5,6 +5,7 @@
 
 #include "base/functions.hpp"
 #include "geom/hypot.hpp"
+#include "sweep/body_groups.hpp"
 
 namespace riffler::verify {
 
@@ -14,25 +15,8 @@ Rod rod_round(const tool::Piece& piece) {
   return {bottom(piece), top(piece), max_radius(piece)};
 }
 
-/// Smaller by `by` (mm) on all sides, but never by more than a quarter.
-tool::Frustum shrunk(const tool::Frustum& f, double by) {
-  const double ends = std::min(by, (f.z1 - f.z0) / 4), slope = (f.r1 - f.r0) / (f.z1 - f.z0);
-  const double side = std::min(by * std::sqrt(1 + slope * slope), std::max(f.r0, f.r1) / 4);
-  const auto radius = [&](double z) { return std::max(0.0, f.r0 + slope * (z - f.z0) - side); };
-  return {f.z0 + ends, radius(f.z0 + ends), f.z1 - ends, radius(f.z1 - ends)};
-}
-
-/// A group of one convex piece: pieces may overlap or leave gaps in any order.
-sweep::ConvexGroup alone(const tool::Frustum& f) {
-  const tool::Piece piece = f;
-  return sweep::convex_groups(std::span(&piece, 1)).front();
-}
-
 Probe probe_of(Member member, const std::vector<tool::Frustum>& pieces, double tolerance) {
-  Probe probe{member, {}, {}};
-  for (const tool::Frustum& f : pieces)
-    probe.real.push_back(alone(f)), probe.small.push_back(alone(shrunk(f, tolerance)));
-  return probe;
+  return {member, sweep::body_groups(pieces, 0), sweep::body_groups(pieces, tolerance)};
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ def test_holder_and_fixtures_block_with_a_reason():
     part = boss_on_plate()
     short = riffler.Tool.ball(diameter=3, length=4).with_holder([(4, 8, 30, 8)])
     op = plan.finish(setup_of(part), short, cusp=0.2, tolerance=0.02)
-    assert [b.reason for b in op.report.blocked] == ["the holder meets the part"]
+    assert [b.reason for b in op.report.blocked] == ["the holder meets the part", "the holder meets the stock"]
     clamp = riffler.Volume.block((0, 0, 3), (5, 30, 20), 0.5, "xyz").to_mesh()
     op = plan.finish(setup_of(part, fixtures=[clamp]), BALL, cusp=0.2, tolerance=0.02)
     assert "the tool meets a fixture" in [b.reason for b in op.report.blocked]

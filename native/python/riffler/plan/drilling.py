@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,7 +36,7 @@ def drill(
     """Drills holes along the set-up's axis, in the order of the points.
 
     A hole is left out, and reported by name, if the drill would enter the part, if shank or holder would touch the
-    part, if the tool would touch a fixture, or if there is no stock.
+    part, if these would touch the stock by then, if the tool would touch a fixture, or if there is no stock.
 
     Parameters
     ----------
@@ -100,7 +101,8 @@ def drill(
     reasons = _reasons(setup, tool, bottoms, tolerance)
     tops = stock_tops(setup, tool, places)
     moves = Moves(setup, feed, feed)
-    blocked, holes, pecks = [], 0, 0
+    blocked: list[Blocked] = []
+    drilled: dict[int, int] = {}
     for k, (tip, reason, top) in enumerate(zip(bottoms, reasons, tops, strict=True)):
         low = float(tip @ setup.axis)
         if not reason and not top - setup.stock.pitch > low:
@@ -109,7 +111,7 @@ def drill(
             blocked.append(Blocked(f"points[{k}]: {reason}", tip, float(depths[k])))
             continue
         steps = 1 if peck is None else max(1, math.ceil((top - low) / peck - 1e-9))
-        holes, pecks = holes + 1, pecks + steps
+        drilled[k] = steps
         above = min(top + ABOVE, moves.plane)
         moves.to(moves.at(tip, moves.plane), RAPID)
         moves.to(moves.at(tip, above), RAPID)
@@ -120,7 +122,25 @@ def drill(
                 moves.to(moves.at(tip, min(above, top - step * (peck or 0.0) + BACK)), RAPID)
         moves.retract()
     reason = blocked[0].reason if blocked else "there are no points"
-    return moves.operation(tool, blocked, reason, {"holes": holes, "pecks": pecks}, spindle, tolerance, progress)
+    op = moves.operation(tool, blocked, reason, {}, spindle, tolerance, progress)
+    return _counted(op, setup, bottoms, depths, drilled, len(blocked))
+
+
+def _counted(
+    op: Operation, setup: Setup, bottoms: np.ndarray, depths: np.ndarray, drilled: dict[int, int], known: int
+) -> Operation:
+    """The operation with its counts, and with the names of the points that it leaves out after the ``known`` ones.
+    ``drilled``: the number of pecks at each of the points."""
+    blocked = list(op.report.blocked[:known])
+    for one in op.report.blocked[known:]:
+        off = bottoms[list(drilled)] - one.place
+        off -= np.outer(off @ setup.axis, setup.axis)
+        k = list(drilled)[int(np.argmin(np.linalg.norm(off, axis=1)))]
+        del drilled[k]
+        blocked.append(Blocked(f"points[{k}]: {one.reason}", bottoms[k], float(depths[k])))
+    stats = {"holes": len(drilled), "pecks": sum(drilled.values())}
+    reason = "" if len(op) else (blocked[0].reason if blocked else op.reason)
+    return replace(op, report=replace(op.report, blocked=tuple(blocked), stats=stats), reason=reason)
 
 
 def _reasons(setup: Setup, tool: Tool, bottoms: np.ndarray, tolerance: float) -> list[str]:

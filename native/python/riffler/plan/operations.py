@@ -21,7 +21,7 @@ class Blocked:
     Attributes
     ----------
     reason : str
-        Why the places cannot be reached, such as "the holder meets the part".
+        Why the places cannot be reached, such as "the holder meets the part" or "the holder meets the stock".
     place : ndarray, shape (3,)
         Tip of the tool at the first of these places, mm.
     length : float

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from copy import copy
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .._core import Mesh, Tool
 from ..arguments import Progress
 from .locations import drop
@@ -73,13 +74,27 @@ class Moves:
         self, tool: Tool, blocked: Sequence[Blocked], reason: str, stats: Mapping[str, int], spindle: float,
         tolerance: float, progress: Progress = None, exact: ExactFit | None = None,
     ) -> Operation:  # fmt: skip
-        """Makes the operation. Carves a copy of the set-up's stock to find what each move removes."""
+        """Makes the operation. Leaves out all moves from an approach to its retract if shank or holder would touch the
+        stock in any of them."""
         count = len(self.tips)
-        poses = np.hstack([np.array(self.tips).reshape(-1, 3), np.tile(self.setup.axis, (count, 1))])
+        if not count:
+            poses, nothing = np.zeros((0, 6)), np.zeros(0)
+            kinds = np.zeros(0, np.uint8)
+            none = PlannedMoves(poses, kinds, nothing, nothing, tuple(blocked), reason, stats, exact=exact)
+            return operation_of(none, tool, self.setup.stock.pitch, spindle, tolerance)
         kind = np.array(self.kinds, dtype=np.uint8)
-        feed = np.array([0.0, self.plunge, self.feed, self.feed])[kind] if count else np.zeros(0)
-        removed = np.zeros(0)
-        if count:
-            removed = copy(self.setup.stock).carve(tool, poses, progress=progress).removed
-        moves = PlannedMoves(poses, kind, feed, removed, tuple(blocked), "" if count else reason, stats, exact=exact)
+        moves = _core.clear_passes(
+            self.setup.part,
+            self.setup.obstacles,
+            self.setup.stock,
+            tool,
+            axis=self.setup.axis,
+            clearance=self.setup.clearance,
+            poses=np.hstack([np.array(self.tips), np.tile(self.setup.axis, (count, 1))]),
+            kinds=kind.tolist(),
+            feeds=np.array([0.0, self.plunge, self.feed, self.feed])[kind].tolist(),
+            tolerance=tolerance,
+            progress=progress,
+        )
+        moves = replace(moves, blocked=(*blocked, *moves.blocked), stats=stats, exact=exact)
         return operation_of(moves, tool, self.setup.stock.pitch, spindle, tolerance)
