@@ -50,4 +50,8 @@ def test_errors_change_nothing():
     wire, before = part("wire.step"), len(bpy.data.objects)
     common.refused(lambda: bpy.ops.riffler.import_cad(filepath=wire), "it has no faces")
     common.refused(lambda: bpy.ops.riffler.import_cad(filepath=common.out("none.step")), "none.step")
+    nested = common.out("nested.step")
+    with open(nested, "w") as file:
+        file.write("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(" + 3_000_000 * "(")
+    common.refused(lambda: bpy.ops.riffler.import_cad(filepath=nested), "nested.step: ")
     assert len(bpy.data.objects) == before and not any(m.name.startswith("wire") for m in bpy.data.meshes)

@@ -368,14 +368,54 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
     return b"ISO-10303-21;" + bytes(data[13:])
 
 
+def hostile(content: bytes) -> dict[str, bytes]:
+    """Files that a reader could hang at, or that could take all memory."""
+    header, data = content.split(b"DATA;", 1)
+    start = b"ISO-10303-21;\nHEADER;\n"
+    spline = (
+        b"#1=B_SPLINE_SURFACE_WITH_KNOTS('',2147483647,2147483647,((#2)),.UNSPECIFIED.,.F.,.F.,.F.,(2147483647),"
+        b"(2147483647),(0.),(0.),.UNSPECIFIED.);\n#2=CARTESIAN_POINT('',(1.E308,-1.E308,NAN));\n"
+    )
+    return {
+        "truncated": content[: len(header) // 2],
+        "endless": header + b"DATA;" + data.replace(b"ENDSEC;", b"").replace(b"END-ISO-10303-21;", b""),
+        "nested": start + b"FILE_DESCRIPTION(" + b"(" * 3_000_000,
+        "nested data": header + b"DATA;\n#1=X(" + b"(" * 1_000_000 + b")" * 1_000_000 + b");\n" + END,
+        "open string": start + b"FILE_NAME('" + b"x" * 3_000_000,
+        "schema": content.replace(b"FILE_SCHEMA((", b"FILE_SCHEMA(('IFC4','" + b"A" * 100_000 + b"',", 1),
+        "counts": content.replace(b"DATA;", b"DATA;\n" + spline, 1),
+        "numbers": content.replace(b"#1", b"#99999999999999999999", 40),
+        "loop": HEADER + b"#1=SHELL_BASED_SURFACE_MODEL('',(#1));\n#2=CLOSED_SHELL('',(#2,#1));\n" + END,
+    }
+
+
+def test_the_readers_memory_is_limited():
+    code = (
+        f"import sys, resource; sys.argv[:] = ['x']; sys.path.insert(0, {str(process.WORKER)!r})\n"
+        "import __main__, runpy\n"
+        f"own = runpy.run_path({str(process.WORKER / '__main__.py')!r}, run_name='worker')\n"
+        "own['limit_memory'](); print(resource.getrlimit(resource.RLIMIT_AS)[0])\n"
+        "try: bytearray(1 << 50)\n"
+        "except MemoryError: print('refused')\n"
+    )
+    if sys.platform != "linux":
+        pytest.skip("only Linux limits the address space")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    limit, refused = done.stdout.split()
+    assert 4 << 30 <= int(limit) < 1 << 50 and refused == "refused"
+
+
 @needs_occ
-def test_damaged_files_neither_hang_nor_crash_the_caller(files, tmp_path):
+def test_damaged_and_hostile_files_neither_hang_nor_crash_the_caller(files, tmp_path):
     chance = random.Random(11)
     whole_file = (files / "assembly.step").read_bytes()
     paths = []
-    for number in range(int(os.environ.get("RIFFLER_CAD_FUZZ", "10"))):
+    for number in range(int(os.environ.get("RIFFLER_CAD_FUZZ", "4"))):
         paths.append(tmp_path / f"{number}.step")
         paths[-1].write_bytes(damaged(whole_file, chance))
+    for name, content in hostile(whole_file).items():
+        paths.append(tmp_path / f"{name}.step")
+        paths[-1].write_bytes(content)
 
     def outcome(path: Path) -> str:
         try:

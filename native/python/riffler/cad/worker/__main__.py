@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import TextIO
 
 PACKAGE = "riffler_cad_worker"
+MEMORY_SHARE = 0.8  # of the computer's memory, as address space
+LEAST_MEMORY = 4 << 30  # bytes: libraries and threads reserve address space that they do not use
 
 
 def main(folder: Path, parent: int) -> int:
@@ -70,8 +72,9 @@ def reporter(stream: TextIO) -> Callable[[str, float], None]:
 def end_with_parent(parent: int, cpu_seconds: int) -> None:
     """Makes this process end when its caller is killed: on Linux at once, elsewhere after a limit of processor time.
 
-    OpenCASCADE holds Python's lock for minutes, so a thread that watches the caller would not run. On Linux, if memory
-    runs out, the system ends this process and not the caller.
+    OpenCASCADE holds Python's lock for minutes, so a thread that watches the caller would not run. On Linux, this
+    process gets at most a share of the computer's memory, and if memory runs out all the same, the system ends this
+    process and not the caller.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)  # PR_SET_PDEATHSIG
@@ -79,11 +82,22 @@ def end_with_parent(parent: int, cpu_seconds: int) -> None:
             os._exit(3)
         with contextlib.suppress(OSError):
             Path("/proc/self/oom_score_adj").write_text("1000")
+        limit_memory()
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds + 5))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def limit_memory() -> None:
+    import resource
+
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    most = max(LEAST_MEMORY, int(MEMORY_SHARE * memory))
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    if hard == resource.RLIM_INFINITY or most < hard:
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
 
 
 if __name__ == "__main__":
