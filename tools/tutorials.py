@@ -14,7 +14,11 @@ import shutil
 from shell import PYTHON, ROOT, StepError, main, run, say
 
 PLACE = ROOT / "docs" / "images" / "tutorials"
-ALSO = {"session": "window_pen", "trace": "window_trace", "cube": "window_cube"}  # pictures that a test takes as it runs
+ALSO = {
+    "session": "window_pen",
+    "trace": "window_trace",
+    "cube": "window_cube",
+}  # pictures that a test takes as it runs
 
 
 def entry() -> None:
