@@ -34,7 +34,9 @@ class StraightLanes {
     for (std::size_t k = 0; k < b_.count; ++k) {
       const SweptShape& p = b_.pieces[k];
       met[k] = both(open, both(hn::Lt(low, set(p.ceiling)), hn::Gt(high, set(p.floor))));
-      if (p.round && p.e != 0 && !none(met[k])) met[k] = near_of_round(k, met[k], low, high, open);
+      if (!p.round || p.e == 0 || none(met[k])) continue;
+      met[k] = both(met[k], beside(p, low, high));
+      if (!none(met[k])) met[k] = near_of_round(k, met[k], low, high, open);
     }
     if (none(open)) return;
     for (std::size_t k = b_.count; k-- > 0;) {  // upper pieces are simple and often determine `far`
@@ -114,6 +116,15 @@ class StraightLanes {
       if (p.cut0 || p.cut1) good = both(good, on_side(p, less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), t, b_.mo)));
       add(good, s, t);
     }
+  }
+
+  /// Lanes that, between these heights of the ray, come to the heights on the axis at which the piece's side lies.
+  /// Elsewhere its ring may go on, but not its side, and a search for the ring's end is slow where there is none.
+  M beside(const SweptShape& p, V low, V high) const {
+    const V a = hn::Mul(low, set(b_.oz)), b = hn::Mul(high, set(b_.oz));
+    const double back = std::max(0.0, b_.way * b_.mo), on = std::min(0.0, b_.way * b_.mo);
+    return both(hn::Le(hn::Add(r_.z, min(a, b)), set(p.high + back)),
+                hn::Ge(hn::Add(r_.z, max(a, b)), set(p.low + on)));
   }
 
   /// Torus or barrel. Returns the lanes of `mask` that meet it at the material. Removes from `open` the lanes that are
