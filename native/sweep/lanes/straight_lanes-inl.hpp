@@ -119,7 +119,7 @@ class StraightLanes {
   }
 
   /// Lanes that, between these heights of the ray, come to the heights on the axis at which the piece's side lies.
-  /// Elsewhere its ring may go on, but not its side, and a search for the ring's end is slow where there is none.
+  /// Elsewhere its ring may continue, but not its side, and a search for the ring's end is slow where there is none.
   M beside(const SweptShape& p, V low, V high) const {
     const V a = hn::Mul(low, set(b_.oz)), b = hn::Mul(high, set(b_.oz));
     const double back = std::max(0.0, b_.way * b_.mo), on = std::min(0.0, b_.way * b_.mo);
