@@ -144,8 +144,11 @@ class BrickMesher {
   void place_cells() {
     places_.clear(), numbers_.clear(), sides_.clear();
     for (int i = -1; i < kBrickSide; ++i)
-      for (int j = -1; j < kBrickSide; ++j)
+      for (int j = -1; j < kBrickSide; ++j) {
+        // A column across the plane has one vertex.
+        if (brick_->hollow && brick_->plain->axis == 2 && is_left_out(i, j, 0)) continue;
         if (const std::uint64_t mixed = signs_->mixed(i, j) & kLower) place_column(i, j, mixed);
+      }
   }
 
   void place_column(int i, int j, std::uint64_t mixed) {
@@ -158,13 +161,14 @@ class BrickMesher {
                                start_[2][column(i, j + 1)], start_[2][column(i + 1, j + 1)]};
     for (; mixed; mixed &= mixed - 1) {
       const int k = std::countr_zero(mixed) - Neighbourhood::kLayers;
-      const CellCase& entry = signs_->entry(table_, i, j, k);
-      const int crossed = entry.crossed;
       if (is_left_out(i, j, k)) {
-        numbers.take(k, entry.cycles);
-        for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
+        // One vertex, and the two edges of the lower layer that run along the plane's axis.
+        numbers.take(k, 1);
+        if (const int axis = brick_->plain->axis; axis < 2) ++cursor[2 * axis], ++cursor[2 * axis + 1];
         continue;
       }
+      const CellCase& entry = signs_->entry(table_, i, j, k);
+      const int crossed = entry.crossed;
       const std::uint32_t edge[12] = {cursor[0],
                                       cursor[1],
                                       cursor[0] + (crossed & 1),

@@ -61,13 +61,12 @@ BorderTriangles VertexGroups::list_border(const ActiveBrick& brick) const {
   };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found;  // list, place
   const Vec3i* const triangles = surface_.mesh.triangles.data() + 2 * brick.first_edge;
-  // Only the outermost quads of a plain brick have border triangles.
-  const auto in_square = [&](std::size_t t) {
-    const std::size_t u = t / (2 * kBrickSide), v = t / 2 % kBrickSide;
-    return u > 0 && u < kPlainLast && v > 0 && v < kPlainLast;
-  };
   for (std::size_t t = 0; t < 2 * brick.edges(); ++t) {
-    if (brick.plain && in_square(t)) continue;
+    if (brick.plain) {
+      // Only the outermost quads of a plain brick have border triangles.
+      const std::size_t u = t / (2 * kBrickSide), v = t / 2 % kBrickSide;
+      if (u > 0 && u < kPlainLast && v == 1) t += 2 * (kPlainLast - 1);
+    }
     const Vec3i& v = triangles[t];
     if (inner(v.x) && inner(v.y) && inner(v.z)) continue;
     const auto place = static_cast<std::uint32_t>(out.triangles.size());
