@@ -195,7 +195,7 @@ void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region,
   double share = 0.04;
   for (int round = 0; !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
     base::report(progress, round / (round + 8.0));
-    fill_near(surface, moved);
+    make_rest_near(surface, moved);
     bool any = share < 1;
     for (const CellVertex& v : moved) any |= pull(surface, v, share, region);
     if (!any) break;

@@ -45,7 +45,7 @@ const FlatSquare& flat_square() {
   return square;
 }
 
-void fill(Surface& surface, ActiveBrick& brick) {
+void make_rest(Surface& surface, ActiveBrick& brick) {
   if (!brick.hollow) return;
   brick.hollow = false;
   const PlainFace& face = *brick.plain;
@@ -84,7 +84,7 @@ void fill(Surface& surface, ActiveBrick& brick) {
     }
 }
 
-void fill_near(Surface& surface, const std::vector<CellVertex>& cells) {
+void make_rest_near(Surface& surface, const std::vector<CellVertex>& cells) {
   std::vector<std::size_t> found;
   for (const CellVertex& v : cells) found.push_back(surface.bricks.index_of(v.cell));
   base::sort_unique(found);
@@ -93,7 +93,7 @@ void fill_near(Surface& surface, const std::vector<CellVertex>& cells) {
     for (int i = at.x - 1; i <= at.x + 1; ++i)
       for (int j = at.y - 1; j <= at.y + 1; ++j)
         for (int k = at.z - 1; k <= at.z + 1; ++k)
-          if (surface.bricks.active(i, j, k)) fill(surface, *surface.bricks.active(surface.bricks.index(i, j, k)));
+          if (surface.bricks.active(i, j, k)) make_rest(surface, *surface.bricks.active(surface.bricks.index(i, j, k)));
   }
 }
 

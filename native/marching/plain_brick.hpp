@@ -39,8 +39,8 @@ struct FlatSquare {
 const FlatSquare& flat_square();
 
 /// Makes what a hollow brick lacks.
-void fill(Surface& surface, ActiveBrick& brick);
+void make_rest(Surface& surface, ActiveBrick& brick);
 /// Makes what the bricks of these cells, and the bricks next to them, lack.
-void fill_near(Surface& surface, const std::vector<CellVertex>& cells);
+void make_rest_near(Surface& surface, const std::vector<CellVertex>& cells);
 
 }  // namespace riffler::marching

@@ -11,6 +11,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 #include "stress/float_audit.hpp"
+#include "stress/mesh_checks.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "support/effort.hpp"
 #include "tests/marching/followed.hpp"
@@ -89,6 +90,34 @@ TEST(AdaptiveMesher, FollowsGridsThatContradictEachOther) {
       EXPECT_TRUE(audit.clean()) << what << ": " << audit;
       if (HasFailure()) return;
     }
+  }
+}
+
+/// to_mesh leaves out the inside of flat bricks, and makes it where folds of contradicting rays are pulled next to
+/// them; a mesher has it.
+TEST(AdaptiveMesher, HasTheBytesOfAMeshThatWasMadePartly) {
+  for (unsigned seed = 0; seed < (test::kSanitized ? 1 : 2); ++seed) {
+    Random random(500 + seed);
+    const Volume block = Volume::block({{{0, 0, 0}, {44, 44, 12}}, 0.25, seed % 3 ? "xyz" : "z"});
+    Volume volume = block;
+    Mesher mesher(volume, 0.05);
+    for (int step = 0; step < 2; ++step) {
+      // A patch across the border of two bricks, 32 rays long.
+      for (dexel::Grid& grid : volume.grids()) {
+        const int i = random.below(grid.nu() - 8), j = 32 * random.below(grid.nv() / 32) + 24;
+        change_rays(grid, i, i + 6, std::min(j, grid.nv() - 8), std::min(j + 7, grid.nv() - 1),
+                    [&] { return spans_at_random(random, grid, 0.8, true); });
+      }
+      volume.touch();
+      mesher.update(volume);
+      const std::string what = "seed " + std::to_string(seed) + ", step " + std::to_string(step);
+      const Mesh whole = to_mesh(volume, 0.05);
+      expect_mesh(mesher, whole, what);
+      EXPECT_EQ(check_within(whole, to_mesh(volume), 0.05), "") << what;
+      if (HasFailure()) return;
+    }
+    mesher.update(block);
+    expect_mesh(mesher, to_mesh(block, 0.05), "back");
   }
 }
 
