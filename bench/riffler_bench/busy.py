@@ -18,7 +18,7 @@ PER_PROCESSOR = 2  # threads that compute
 
 
 def sessions(out: Report, settings: Settings) -> None:
-    rounds, seconds = (1, 1.0) if settings.quick else (ROUNDS, SECONDS)
+    rounds, seconds = (1, 0.5) if settings.quick else (ROUNDS, SECONDS)
     load = PER_PROCESSOR * len(os.sched_getaffinity(0))
     table = out.section(
         "busy",

@@ -67,6 +67,7 @@ def detail(
     directions: str = "xyz",
     rays: int = 0,
     decimated: float = 0.0,
+    repeats: int = 3,
 ) -> dict[str, Any]:
     """A volume's meshes without and with tolerances, which alternate: medians of times. Saves the meshes in `folder`,
     named full and less-TOLERANCE. `scene`: b200, s500k or an .stl file. `rays`: along the longest side, instead of a
@@ -84,7 +85,7 @@ def detail(
     calls: dict[str, Any] = {"full": volume.to_mesh}
     for tolerance in tolerances:
         calls[f"less-{tolerance:g}"] = lambda t=tolerance or volume.pitch / 10: volume.to_mesh(tolerance=t)
-    made, rows = alternated(calls, 3)
+    made, rows = alternated(calls, repeats)
     for name, mesh in made.items():
         np.save(f"{folder}/{name}.v.npy", mesh.vertices)
         np.save(f"{folder}/{name}.t.npy", mesh.triangles)

@@ -105,7 +105,7 @@ def single(out: Report, settings: Settings, progress: Progress) -> None:
         *THREE_COLUMNS[:2],
         *ERROR_COLUMNS,
     )
-    pitch, rays = (1.0, 20) if settings.quick else (0.25, 200)
+    pitch, rays = (1.0, 8) if settings.quick else (0.25, 200)
     # Straight moves do not depend on the tolerance; it only says how finely the comparison looks.
     turning, straight = ((0.01,), (0.01,)) if settings.quick else (TOLERANCES, (1e-4,))
     cases = [

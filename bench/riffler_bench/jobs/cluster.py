@@ -14,6 +14,7 @@ from ..measure import Progress, Settings, threads, watched
 from ..report import Column, Report
 
 LINES = 250
+NAMES = {False: "three axes", True: "five axes"}  # by whether the axis tilts
 
 
 def on_workers(client: Any, program: Program, stock: Volume) -> tuple[VerifyReport, dict[str, Any]]:
@@ -78,41 +79,43 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         for section in (speed, cost):
             section.notes.append(f"Not measured: {error}.")
         return out
-    for tilted in watched((False, True), progress):
-        name = "five axes" if tilted else "three axes"
+    programs, alone, expected = {}, {}, {}
+    for tilted, name in NAMES.items():
         rows = (4_000 if settings.quick else 200_000) if tilted else (20_000 if settings.quick else 1_000_000)
         program, stock = waves.program(rows, LINES, tilted), waves.stock(0.5 if settings.quick else 0.1)
-        alone: dict[int, float] = {}
+        programs[name] = program, stock
         for count in (1, 2):
             with threads(count):
                 start, before = time.perf_counter(), time.process_time()
                 found = verify(program, stock)
-                alone[count], used = time.perf_counter() - start, time.process_time() - before
-            expected = waves.contents(found)
+                wall, used = time.perf_counter() - start, time.process_time() - before
+            expected[name] = waves.contents(found)
+            alone.setdefault(name, wall)  # with one thread
             speed.row(
                 program=name, rows=len(program), who=f"no cluster, {count} thread{'s' * (count > 1)}",
-                wall_s=alone[count], rate=len(program) / alone[count], speedup=alone[1] / alone[count], same=True,
-                client_cpu_s=used,
+                wall_s=wall, rate=len(program) / wall, speedup=alone[name] / wall, same=True, client_cpu_s=used,
             )  # fmt: skip
-        for count in (1, 2):
-            with (
-                threads(1),  # of the client too: what sorts moves is not to help the workers
-                distributed.LocalCluster(
-                    n_workers=count, threads_per_worker=1, processes=True, dashboard_address=":0", host="127.0.0.1"
-                ) as local,
-                distributed.Client(local, set_as_default=False) as client,
-            ):
-                client.wait_for_workers(count, timeout=60)
-                client.run(eval, cluster.VERSION_OF)  # imports riffler before the clock starts
-                found, figures = on_workers(client, program, stock)
-            same = waves.contents(found) == expected
+    for count in watched((1, 2), progress):
+        with (
+            threads(1),  # of the client too: what sorts moves is not to help the workers
+            distributed.LocalCluster(
+                n_workers=count, threads_per_worker=1, processes=True, dashboard_address=":0", host="127.0.0.1"
+            ) as local,
+            distributed.Client(local, set_as_default=False) as client,
+        ):
+            client.wait_for_workers(count, timeout=60)
+            client.run(eval, cluster.VERSION_OF)  # imports riffler before the clock starts
+            measured = {name: on_workers(client, *work) for name, work in programs.items()}
+        for name, (found, figures) in measured.items():
+            same, rows = waves.contents(found) == expected[name], len(programs[name][0])
             out.check(same, f"{name}, {count} workers: other bytes")
             wall, *used = (figures.pop(key) for key in ("wall_s", "client_cpu_s", "workers_cpu_s"))
             speed.row(
-                program=name, rows=len(program), who=f"{count} worker{'s' * (count > 1)}", wall_s=wall,
-                rate=len(program) / wall, speedup=alone[1] / wall, same=same,
-                client_cpu_s=used[0], workers_cpu_s=used[1],
+                program=name, rows=rows, who=f"{count} worker{'s' * (count > 1)}", wall_s=wall, rate=rows / wall,
+                speedup=alone[name] / wall, same=same, client_cpu_s=used[0], workers_cpu_s=used[1],
             )  # fmt: skip
-            more = (wall - alone[1]) / figures["slabs"] if count == 1 else None
+            more = (wall - alone[name]) / figures["slabs"] if count == 1 else None
             cost.row(program=name, workers=count, **figures, overhead_s=more)
+    for section in (speed, cost):
+        section.rows.sort(key=lambda row: list(programs).index(row["program"]))
     return out

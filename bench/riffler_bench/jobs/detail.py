@@ -47,7 +47,10 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     return out
 
 
-def measured(folder: Path, scene: str, pitch: float, tolerances: list[float], **more: Any) -> dict[str, Any]:
+def measured(
+    settings: Settings, folder: Path, scene: str, pitch: float, tolerances: list[float], **more: Any
+) -> dict[str, Any]:
+    more["repeats"] = 1 if settings.quick else 3
     return child("detail", scene=scene, pitch=pitch, tolerances=tolerances, folder=str(folder), **more)
 
 
@@ -86,7 +89,13 @@ def tolerances(out: Report, settings: Settings, folder: Path, progress: Progress
     for directions in watched(("xyz", "z"), progress):
         wanted = list(TOLERANCES if directions == "xyz" else (0.005,))
         got = measured(
-            folder, "b200", pitch, wanted, directions=directions, decimated=0.005 if directions == "xyz" else 0.0
+            settings,
+            folder,
+            "b200",
+            pitch,
+            wanted,
+            directions=directions,
+            decimated=0.005 if directions == "xyz" else 0.0,
         )
         full = got["full"]
         table.row(directions=directions, ratio=1.0, **full)
@@ -124,7 +133,7 @@ def growth(out: Report, settings: Settings, folder: Path, progress: Progress) ->
     )
     before: dict[str, Any] = {}
     for pitch in watched((1.0, 0.5) if settings.quick else (0.4, 0.25, 0.15, 0.1), progress):
-        got = measured(folder, "b200", pitch, [0.005], directions="xyz")
+        got = measured(settings, folder, "b200", pitch, [0.005], directions="xyz")
         row = {"pitch": pitch, "full": got["full"]["triangles"], **compared(got["rows"][0], got["full"])}
         if before:
             finer = math.log(before["pitch"] / pitch)
@@ -145,7 +154,7 @@ def rivals(out: Report, settings: Settings, folder: Path, progress: Progress) ->
         Column("vertices: largest error mm", "max_mm", report.mm),
         Column("middles of triangles: largest", "middle_max_mm", report.mm),
     )
-    got = measured(folder, "b200", pitch, [0.01, 0.005], directions="xyz", decimated=0.005)
+    got = measured(settings, folder, "b200", pitch, [0.01, 0.005], directions="xyz", decimated=0.005)
     table.row(engine="Riffler, to_mesh()", **got["full"], **errors(load(folder, "full")))
     for tolerance, figures in zip((0.01, 0.005), got["rows"], strict=True):
         table.row(engine=f"Riffler, to_mesh({tolerance:g})", **figures, **errors(load(folder, f"less-{tolerance:g}")))
@@ -198,7 +207,7 @@ def parts(out: Report, settings: Settings, folder: Path, progress: Progress) -> 
     scenes = ["s500k", *map(str, models)]
     for scene in watched(scenes, progress):
         rays = 100 if settings.quick else 400
-        got = measured(folder, scene, 0.0, [0.0], directions="xyz", rays=rays)
+        got = measured(settings, folder, scene, 0.0, [0.0], directions="xyz", rays=rays)
         name = "S500k, first 20 000 moves" if scene == "s500k" else Path(scene).stem
         pitch = got["pitch"]
         figures = compared(got["rows"][0], got["full"])

@@ -66,7 +66,7 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
         *ERROR_COLUMNS,
         Column("peak memory", "peak_bytes", report.megabytes),
     )
-    pitches = (1.0, 0.5) if settings.quick else (1.0, 0.5, 0.25, 0.15, 0.1)
+    pitches, repeats = ((1.0, 0.5), 1) if settings.quick else ((1.0, 0.5, 0.25, 0.15, 0.1), 5)
     for pitch in watched(pitches, progress):
         field, origin = exact.field(pitch)
         field.tofile(folder / "field")
@@ -79,7 +79,7 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
                 try:
                     if engine in MODES:
                         path = folder / "mesh.stl"
-                        timing = child("mesh", count, pitch=pitch, directions=work, repeats=5, path=str(path))
+                        timing = child("mesh", count, pitch=pitch, directions=work, repeats=repeats, path=str(path))
                         made = Mesh.read(path) if not figures else None
                     else:
                         timing, made = field_mesh(settings, work, folder, count, 1 if work == SLOW else 3, **place)

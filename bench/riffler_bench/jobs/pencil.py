@@ -15,7 +15,7 @@ from riffler import Mesh, Tool, plan
 
 from .. import _bench as core
 from .. import baselines, report, valleys
-from ..curves import Agreement, Segments, compare
+from ..curves import SPACING, Agreement, Segments, compare
 from ..measure import Progress, Settings, child, shares, steady, threads, watched
 from ..pencil_cases import TOLERANCE, TOOL, Case, case, cases, contacts, digest, lines_of, picture, turned
 from ..remesh import STEP, WAYS, Patch, Surface, mesh
@@ -185,6 +185,11 @@ def total(rows: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
+def between(settings: Settings) -> float:
+    """mm between the compared places; the ends of all pieces are compared, too."""
+    return 5 * SPACING if settings.quick else SPACING
+
+
 def share_text(value: float) -> str:
     return f"{100 * value:.3g} %"
 
@@ -195,7 +200,7 @@ def judged(out: Report, table: report.Section, c: Case, settings: Settings) -> d
         start = time.thread_time()
         paths = plan.pencil(c.mesh, TOOL, tolerance=TOLERANCE)
         seconds = time.thread_time() - start
-    result = compare(lines_of(paths), c.lines, c.limit)
+    result = compare(lines_of(paths), c.lines, c.limit, between(settings))
     near = contacts(paths, c.true) if len(paths) and c.true else {}
     row = table.row(
         part=c.part.name,
@@ -265,7 +270,7 @@ def tolerances(out: Report, settings: Settings, progress: Progress) -> None:
                 start = time.thread_time()
                 paths = plan.pencil(placed, TOOL, tolerance=tolerance)
                 seconds = time.thread_time() - start
-            result = compare(lines_of(paths), true, tolerance + sag)
+            result = compare(lines_of(paths), true, tolerance + sag, between(settings))
             out.check(
                 result.hausdorff is not None and result.hausdorff <= tolerance + sag,
                 f"{name}: {result.hausdorff} mm at tolerance {tolerance:g}",

@@ -8,7 +8,7 @@ from ..report import Column, Report
 
 
 def run(settings: Settings, progress: Progress = None) -> Report:
-    moves = 20_000 if settings.quick else 500_000
+    moves = 5_000 if settings.quick else 500_000
     out = Report("s500k", {"moves": moves})
     table = out.section(
         "moves",

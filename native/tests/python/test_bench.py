@@ -49,7 +49,7 @@ BPY = ROOT / ".envs" / "bpy-4.5" / "bin" / "python"
 def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
     command = [sys.executable, "-m", "riffler", "bench", *map(str, words)]
     return subprocess.run(
-        command, cwd=cwd, env=ENVIRONMENT | more, capture_output=True, text=True, timeout=600, check=False
+        command, cwd=cwd, env=ENVIRONMENT | more, capture_output=True, text=True, timeout=3000, check=False
     )
 
 
