@@ -127,13 +127,16 @@ class StraightLanes {
                 hn::Ge(hn::Add(r_.z, max(a, b)), set(p.low + on)));
   }
 
-  /// Torus or barrel. Returns the lanes of `mask` that meet it at the material. Removes from `open` the lanes that are
-  /// complete: their near end is on the group's own surface, and the top of the material lies in the group at that
-  /// pose.
+  /// Torus or barrel. Returns the lanes of `mask` that meet it below the top of the material. Removes from `open` the
+  /// lanes that are complete: their near end is on the group's own surface, and the top of the material lies in the
+  /// group at that pose.
   M near_of_round(std::size_t k, M mask, V low, V high, M& open) {
     const SweptShape& p = b_.pieces[k];
     V s, way;
-    const M near = StraightRound(b_, p, r_).end(mask, 1, low, high, s, way);
+    const M met = StraightRound(b_, p, r_).end(mask, 1, low, high, s, way);
+    // The near end may be found above the material. There the search for the far end may find none, so such a Round
+    // is not met, and its neighbour ends at the face between them.
+    const M near = both(met, hn::Le(s, high));
     mask_ = mask;
     const V z = height(s, way);
     add_near(both(near, on_side(p, z)), s, way);

@@ -217,6 +217,31 @@ TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
   EXPECT_GT(ends, 200);
 }
 
+/// Rays leave the tool through its rounded end, above the block.
+TEST(Carve, ARoundedEndAboveTheBlockBoundsTheShankBelow) {
+  const Tool tool = cutters::fillet(6.8053684546226449, 0.42533552841391531, 85.861101581421934);
+  const Vec3 axis{0.35767547507862152, 0.063208296424172861, -0.93170433389055152};
+  const std::vector<Pose> poses{{{-67.6212, -36.8546, 115.2503}, axis}, {{97.3713, 70.7177, -91.0794}, axis}};
+  const reference::SweptDistance distance(tool.profile(), Motion(poses[0], poses[1]));
+  int ends = 0;
+  for (const double top : {18.0, 22.0, 26.0, 28.5, 30.0, 32.0, 34.0, 38.0, 46.0}) {
+    Volume volume = Volume::block({{{-8, -2, -4}, {2, 8, top}}, 1, "z"});
+    carve(volume, tool, poses);
+    const dexel::Grid& grid = volume.reference();
+    for (int i = 0; i < grid.nu(); ++i)
+      for (int j = 0; j < grid.nv(); ++j)
+        for (const dexel::Span& span : grid.ray(i, j))
+          for (const double s : {span.near, span.far}) {
+            const double off = distance({grid.u(i), grid.v(j), s});
+            EXPECT_GT(off, -1e-8) << i << ", " << j << " below " << top;
+            if (s == grid.box().lower.z || s == grid.box().upper.z) continue;
+            EXPECT_LT(off, 1e-8) << i << ", " << j << " below " << top;
+            ++ends;
+          }
+  }
+  EXPECT_GT(ends, 200);
+}
+
 TEST(Carve, ATurningToolThatGrazesARayAllAlongDoesNotCombIt) {
   // Turning about y leaves the disc's reach along y unchanged; chords are 5e-5 mm, one after the other for 90 mm.
   const double h = 0.5, beside = 3 - 1e-10;
