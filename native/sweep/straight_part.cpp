@@ -13,7 +13,7 @@ namespace {
 SweptShape swept_shape(const tool::Piece& piece, bool hidden0, bool hidden1) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   SweptShape s{shape_of(piece), false, false, -kEverywhere, kEverywhere, 0, 0, {}};
-  s.face0 = s.cut0 && !hidden0, s.face1 = s.cut1 && !hidden1;
+  s.face0 = s.cut0 && !hidden0 && s.r0 > 0, s.face1 = s.cut1 && !hidden1;
   // Rounding must not lose a hit at an end of the side, because the edge's own hits may be tangent there.
   const double slack = 1e-11 * (std::abs(s.z0) + std::abs(s.z1) + std::max(s.r0, s.r1));
   // Where a ray meets the line that a cone's apex sweeps, two roots coincide and lose half of their digits.

@@ -50,7 +50,9 @@ HWY_INLINE Nearest nearest(const SweptSurface& surface, V rho, V z) {
     const PieceShape& s = surface.pieces[k];
     const V past = beyond(z, s.z0, s.z1);
     if (s.round) {
-      const V x = max(hn::Sub(rho, set(s.e)), zero()), y = hn::Sub(z, set(s.zc));
+      // The normal of the end of the arc, not of its circle beyond: `edge` below compares with it.
+      const V on = min(max(z, set(s.z0)), set(s.z1));
+      const V x = max(hn::Sub(rho, set(s.e)), zero()), y = hn::Sub(on, set(s.zc));
       const V length = sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
       const M good = hn::Gt(length, zero());
       const V whole = pick(good, length, set(1));
@@ -96,24 +98,26 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   const V rho = sqrt(dot(aside, aside));
   const V3 back = cross(w, b.spin);
   const V3 velocity{hn::Sub(set(b.way[0]), back.x), hn::Sub(set(b.way[1]), back.y), hn::Sub(set(b.way[2]), back.z)};
+  const V rounding = set(1e-9), square = dot(velocity, velocity), speed = sqrt(square), rise = dot(velocity, axis);
+  const M starts = hn::Le(t, rounding), stops = hn::Ge(t, hn::Sub(set(1), rounding));
   // On the axis, such as at a cone's apex, the tool has sides all around. Backwards where the move starts, forwards
-  // where it stops, they are not covered.
-  const M off_axis = hn::Gt(rho, set(on_axis));
+  // where it stops, they are not covered. Between, the apex sweeps an edge, where n · v = 0 for a normal between that
+  // of its lowest point and that of the side ahead if the tool rises, behind if it falls. t is rounded, see below.
+  const M off_axis = hn::Gt(rho, hn::Add(set(on_axis), hn::Mul(set(b.angle == 0 ? 1e-9 : 0), speed)));
   const V whole = pick(off_axis, rho, set(1));
-  const V3 ahead = less(velocity, dot(velocity, axis), axis);
-  const V3 radial = choose(off_axis, {hn::Div(aside.x, whole), hn::Div(aside.y, whole), hn::Div(aside.z, whole)},
-                           square_to(axis, scaled(ahead, pick(hn::Lt(t, set(0.5)), set(-1), set(1))),
-                                     hn::Mul(set(1e-16), dot(velocity, velocity))));
+  const V3 ahead = less(velocity, rise, axis);
+  const M behind = either(starts, without(hn::Le(rise, zero()), stops));
+  const V3 at_apex = square_to(axis, scaled(ahead, pick(behind, set(-1), set(1))), hn::Mul(set(1e-16), square));
+  const V3 radial =
+      choose(off_axis, {hn::Div(aside.x, whole), hn::Div(aside.y, whole), hn::Div(aside.z, whole)}, at_apex);
   const Nearest at = nearest(b, rho, z);
   const auto in_space = [&](const Across& n) {
     const V3 out = scaled(radial, n.out), up = scaled(axis, n.up);
     return V3{hn::Add(out.x, up.x), hn::Add(out.y, up.y), hn::Add(out.z, up.z)};
   };
   const V3 n = in_space(at.normal);
-  const V square = dot(velocity, velocity), speed = sqrt(square), slide = dot(n, velocity);
-  const V rounding = set(1e-9);
+  const V slide = dot(n, velocity);
   const M still = hn::Not(hn::Gt(abs(slide), zero()));
-  const M starts = hn::Le(t, rounding), stops = hn::Ge(t, hn::Sub(set(1), rounding));
   // t is a multiple of 2⁻³⁰, so on a long move a point on an edge is a little off both sides.
   const V size = hn::Add(hn::Add(rho, abs(z)), hn::Mul(set(2), speed));
   const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, size)));
@@ -127,17 +131,18 @@ HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::si
   if (none(hn::Not(ends_there))) return at_end;
   // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
   // sides.
-  const V3 around{hn::Sub(hn::Mul(axis.y, aside.z), hn::Mul(axis.z, aside.y)),
-                  hn::Sub(hn::Mul(axis.z, aside.x), hn::Mul(axis.x, aside.z)),
-                  hn::Sub(hn::Mul(axis.x, aside.y), hn::Mul(axis.y, aside.x))};
+  const V3 arm = choose(off_axis, aside, at_apex);
+  const V3 around{hn::Sub(hn::Mul(axis.y, arm.z), hn::Mul(axis.z, arm.y)),
+                  hn::Sub(hn::Mul(axis.z, arm.x), hn::Mul(axis.x, arm.z)),
+                  hn::Sub(hn::Mul(axis.x, arm.y), hn::Mul(axis.y, arm.x))};
   const V3 swept{hn::Sub(hn::Mul(around.y, velocity.z), hn::Mul(around.z, velocity.y)),
                  hn::Sub(hn::Mul(around.z, velocity.x), hn::Mul(around.x, velocity.z)),
                  hn::Sub(hn::Mul(around.x, velocity.y), hn::Mul(around.y, velocity.x))};
   const V length = sqrt(dot(swept, swept));
-  const M firm = hn::Gt(length, hn::Mul(hn::Mul(rounding, speed), rho));
+  const M firm = hn::Gt(length, hn::Mul(hn::Mul(rounding, speed), whole));
   // The normal is between those of the two sides, and may be perpendicular to the radial direction.
   const V3 between{hn::Add(n.x, second.x), hn::Add(n.y, second.y), hn::Add(n.z, second.z)};
-  const V sign = with_sign(set(1), dot(swept, choose(close, between, aside)));
+  const V sign = with_sign(set(1), dot(swept, choose(close, between, arm)));
   const V3 turned = choose(firm, scaled(swept, hn::Div(sign, pick(firm, length, set(1)))), n);
   // One of the sides may slide along itself, as the flat end of a tool on a level move does. Where two sides join
   // smoothly both do; there `swept` may consist of rounding, and then it is not between them.

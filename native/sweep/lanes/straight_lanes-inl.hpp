@@ -251,12 +251,26 @@ class StraightLanes {
     const V b = less(r_.y, t0, b_.m2);
     const V k = hn::Add(k0, hn::Mul(set(p.slope), hn::Sub(hn::Mul(s0, set(b_.oz)), hn::Mul(t0, set(b_.mo)))));
     const double da = ds * b_.tilt - dt * b_.m1, db = -dt * b_.m2, dk = p.slope * (b_.oz * ds - b_.mo * dt);
-    double q2 = da * da + db * db - dk * dk;
+    const double bend = da * da + db * db - dk * dk, q2 = std::abs(bend);
     V q1 = dot(a, da, b, db, k, -dk);
     V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
-    if (q2 < 0) q2 = -q2, q1 = hn::Neg(q1), q0 = hn::Neg(q0);
-    const RayIntervals roots = at_most_zero(q2, 1 / q2, q1, q0, SweptShape::kTangent);
-    const M real = hn::Le(roots.near, roots.far);
+    if (bend < 0) q1 = hn::Neg(q1), q0 = hn::Neg(q0);
+    RayIntervals roots = at_most_zero(q2, 1 / q2, q1, q0, SweptShape::kTangent);
+    M real = hn::Le(roots.near, roots.far);
+    if (p.cut0 && p.r0 == 0 && std::abs(dk) > 1e-6 && q2 > 1e-6) {
+      // Next to the apex the two roots coincide and lose half of their digits, unless they are measured from there.
+      const V apex = hn::Mul(k, set(-1 / dk)), square = hn::Mul(q1, q1);
+      const V x = hn::Add(a, hn::Mul(apex, set(da))), y = hn::Add(b, hn::Mul(apex, set(db)));
+      const V p1 = hn::Add(hn::Mul(x, set(da)), hn::Mul(y, set(db))), p0 = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+      const double rounding = 1e-12 * (p.z1 - p.z0);
+      const M met = hn::Le(p0, set(rounding * rounding));
+      const M tangent = both(real, hn::Le(hn::Sub(square, hn::Mul(set(q2), q0)), hn::Mul(set(1e-10), square)));
+      const V root = sqrt(max(hn::Sub(hn::Mul(p1, p1), hn::Mul(set(bend), p0)), zero()));
+      const auto from_apex = [&](V l) { return hn::Add(apex, hn::Mul(l, set(1 / bend))); };
+      roots.near = pick(either(met, tangent), from_apex(hn::Neg(hn::Add(p1, root))), roots.near);
+      roots.far = pick(either(met, tangent), from_apex(hn::Sub(root, p1)), roots.far);
+      real = either(real, met);
+    }
     for (const V l : {roots.near, roots.far}) {
       const V s = hn::Add(s0, hn::Mul(l, set(ds))), t = hn::Add(t0, hn::Mul(l, set(dt)));
       const V z = less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), t, b_.mo);

@@ -73,5 +73,51 @@ TEST(SweptNormals, AreExactOnMovesAHundredThousandRadiiLong) {
   expect_normals(cutters::flat(2 * kRadius, 90), of_flat);
 }
 
+/// The apex of a cone sweeps an edge as long as the path is flatter than the cone.
+TEST(SweptNormals, AreSquareToTheLineOfAnApex) {
+  const Tool tool = cutters::cone_end(0.85, 0.5, 0.4, 4, 40);
+  const Vec3 start{6.25, 6.25, 5};
+  int ends = 0;
+  for (const Vec3& way : {Vec3(-4, 0, 1), Vec3(-4, 0, -1), Vec3(3, 0, 0.6), Vec3(3, 0, 0), Vec3(4.3, 0, -2.9)}) {
+    Volume volume = Volume::block({{{0, 0, 0}, {12, 12, 12}}, 0.5, "xyz"});
+    carve(volume, tool, std::vector<Pose>{{start, {0, 0, 1}}, {start + way, {0, 0, 1}}});
+    const dexel::Grid& grid = volume.grids()[2];
+    for (int i = 0; i < grid.nu(); ++i) {
+      const double t = (grid.u(i) - start.x) / way.x;
+      if (t < 1e-6 || t > 1 - 1e-6) continue;
+      const Vec3 normal = grid.ray_normals(i, 12)[0].far.unpack();  // y = 6.25
+      const Vec3 edge = glm::normalize(Vec3(-way.z, 0, way.x) * (way.x < 0 ? -1.0 : 1.0));
+      EXPECT_LT(glm::length(normal - edge), 1e-4) << "moved by " << way.x << ", " << way.z << ", ray " << i;
+      ++ends;
+    }
+  }
+  EXPECT_GT(ends, 30);
+}
+
+/// A rim that slides along itself, next to an arc whose end does, too.
+TEST(SweptNormals, AreSquareToAWallThatARimSweepsAlongTheAxis) {
+  const Tool tool = cutters::profile({{{1.75, 0}, {}}, {{3.5, 1.75}, Vec2(1.75, 1.75)}, {{2.25, 7}, {}}}, 7);
+  int ends = 0;
+  for (const double rise : {0.3, 1.7, 5.1, 17.3, 41.0}) {
+    Volume volume = Volume::block({{{-4, -4, 0}, {4, 4, 8}}, 0.3, "xyz"});
+    const Pose from{{0.013, 0.021, 2}, {0, 0, 1}}, to{from.tip + Vec3(0, 0, rise), {0, 0, 1}};
+    carve(volume, tool, std::vector<Pose>{from, to});
+    for (int k : {0, 1}) {
+      const dexel::Grid& grid = volume.grids()[static_cast<std::size_t>(k)];
+      for (int i = 0; i < grid.nu(); ++i)
+        for (int j = 0; j < grid.nv(); ++j) {
+          const auto ray = grid.ray(i, j);
+          if (ray.size() != 2) continue;
+          const Vec3 p = to_world(grid.axis(), {grid.u(i), grid.v(j), ray[0].far}) - from.tip;
+          if (p.z < 1.75 || p.z > std::min(rise, 4.0)) continue;
+          const Vec3 normal = grid.ray_normals(i, j)[0].far.unpack();
+          EXPECT_LT(glm::length(normal + Vec3(p.x, p.y, 0) / 3.5), 1e-4) << p.z << ", rise " << rise;
+          ++ends;
+        }
+    }
+  }
+  EXPECT_GT(ends, 100);
+}
+
 }  // namespace
 }  // namespace riffler::sweep::swept_normals_test
