@@ -97,6 +97,7 @@ def test_the_simulated_pen_traces_a_step_file_and_leaves_a_curve_on_its_exact_fa
     assert not bpy.ops.riffler.pen_trace.poll()
 
 
+@common.core_bound
 def test_the_tool_stays_out_of_the_exact_surface_of_an_object_that_was_turned_and_moved():
     """Its triangles are up to 0.3 mm inside. The normals are those of the torus."""
     with_reader()
