@@ -17,6 +17,7 @@ from . import session as pen_session
 
 FRAME = 1 / 30  # s between two polls
 TELL = 0.2  # s between two updates of the panel's text
+READ = 15.0  # s for which a message stays
 # The tool that is active while a device sculpts: it binds Esc, and choosing another tool ends the session
 # (sculpt/idle_detection.py).
 TOOL = "riffler.carve"
@@ -250,6 +251,31 @@ def say(text):
     """Sets the status text of every window: a timer has no window of its own."""
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
+
+
+def look_at(kind, show):
+    """What the timer function of a session of this kind does and returns; `show(session)` shows its state. A session
+    that ends by itself leaves its message in the status bar, since outside an operator there are no reports."""
+    session = pen_session.running
+    if not isinstance(session, kind):
+        return None
+    try:
+        if session.look():
+            show(session)
+            return FRAME
+    except operator_parts.ERRORS as error:
+        session.fail(error)
+    level, text, _ = session.summary()
+    if level == "WARNING":
+        say(f"Riffler: {text}")
+        bpy.app.timers.register(hush, first_interval=READ)
+    return None
+
+
+def hush():
+    """Timer function: removes the message of a session that has ended by itself."""
+    if pen_session.running is None:
+        say(None)
 
 
 def _leave():

@@ -17,7 +17,6 @@ from .pure import trace_run
 from .trace_session import TraceSession
 
 LIMIT = 5.0  # N: mark of the gauge, unless the preferences have a limit
-READ = 15.0  # s for which a message stays
 
 _force = _tool = None  # what is drawn (sculpt/force_view.py, trace_view.py)
 _told, _told_at = (), 0.0
@@ -117,26 +116,7 @@ def _show(context, session):
 
 def _look():
     """Timer function while the session runs."""
-    session = pen_session.running
-    if not isinstance(session, TraceSession):
-        return None
-    try:
-        if session.look():
-            _tell(session)
-            return operators.FRAME
-    except operator_parts.ERRORS as error:
-        session.fail(error)
-    level, text, _ = session.summary()
-    if level == "WARNING":  # outside an operator there are no reports
-        operators.say(f"Riffler: {text}")
-        bpy.app.timers.register(_hush, first_interval=READ)
-    return None
-
-
-def _hush():
-    """Timer function: removes the message of a session that has ended by itself."""
-    if pen_session.running is None:
-        operators.say(None)
+    return operators.look_at(TraceSession, _tell)
 
 
 def _tell(session):
@@ -187,8 +167,7 @@ def attach():
 
 def detach():
     handlers.ignore(_HANDLERS)
-    handlers.stop(_look)
-    handlers.stop(_hush)
+    handlers.stop(_look, operators.hush)
     if isinstance(pen_session.running, TraceSession):
         pen_session.running.drop()
 

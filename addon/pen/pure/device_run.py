@@ -56,6 +56,14 @@ class DeviceRun:
         if turn is not None and self.running:
             self.session.set_workspace(**self.workspace, turn=turn)
 
+    @property
+    def over(self) -> bool:
+        """True when a recording has been played to its end."""
+        return self.device.kind == "recording" and self.device.health().state == "stopped"
+
+    def start(self) -> None:
+        self.session.start()
+
     def close(self) -> None:
         self.device.stop()
 

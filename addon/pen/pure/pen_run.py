@@ -43,18 +43,10 @@ class PenRun(DeviceRun):
         self._rows.clear()
         return self.session
 
-    def start(self) -> None:
-        self.session.start()
-
     def look(self) -> None:
         """Brings the volume up to date."""
         self._take(self.session.frame())
         self.heal()
-
-    @property
-    def over(self) -> bool:
-        """True when a recording has been played to its end."""
-        return self.device.kind == "recording" and self.device.health().state == "stopped"
 
     def halt(self) -> str:
         """Stops the device's forces and the session, and updates the volume. Returns the session's problem, or ""."""

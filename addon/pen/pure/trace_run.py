@@ -67,18 +67,10 @@ class TraceRun(DeviceRun):
         self.contact: tuple[np.ndarray, np.ndarray] | None = None  # deepest point and normal of the surface there
         self.traces = Traces()
 
-    def start(self) -> None:
-        self.session.start()
-
     def look(self) -> None:
         """Updates what is shown, and the traces."""
         self._take(self.session.frame())
         self.heal()
-
-    @property
-    def over(self) -> bool:
-        """True when a recording has been played to its end."""
-        return self.device.kind == "recording" and self.device.health().state == "stopped"
 
     def halt(self) -> str:
         """Stops the device's forces and the session. Returns the session's problem, or ""."""

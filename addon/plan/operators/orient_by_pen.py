@@ -19,7 +19,6 @@ from . import keys
 from .plan_work import PlanWork, part_poll, timeline_poll
 
 NO_EVENTS = "device: mouse and tablet turn the tool in a window only, until Esc; choose another device for a script"
-READ = 15.0  # s for which a message stays
 MOST_TORQUE = 300.0  # N·mm: a session's largest, unless the preferences name one
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
@@ -115,26 +114,7 @@ def _show_force(context, diameter):
 
 def _look():
     """Timer function while the session runs."""
-    session = pen_session.running
-    if not isinstance(session, PenOrientation):
-        return None
-    try:
-        if session.look():
-            _tell(session)
-            return pen_operators.FRAME
-    except operator_parts.ERRORS as error:
-        session.fail(error)
-    level, text, _ = session.summary()
-    if level == "WARNING":  # outside an operator there are no reports
-        pen_operators.say(f"Riffler: {text}")
-        bpy.app.timers.register(_hush, first_interval=READ)
-    return None
-
-
-def _hush():
-    """Timer function: removes the message of a session that has ended by itself."""
-    if pen_session.running is None:
-        pen_operators.say(None)
+    return pen_operators.look_at(PenOrientation, _tell)
 
 
 def _tell(session):
@@ -184,8 +164,7 @@ def attach():
 
 def detach():
     handlers.ignore(_HANDLERS)
-    handlers.stop(_look)
-    handlers.stop(_hush)
+    handlers.stop(_look, pen_operators.hush)
 
 
 CLASSES = (RIFFLER_OT_plan_pen,)

@@ -36,9 +36,6 @@ class OrientRun(DeviceRun):
         self.point = options.get("point", 0)  # of the path, see point_at
         self._points, self._closed = len(path), path.closed
 
-    def start(self) -> None:
-        self.session.start()
-
     def look(self) -> tuple[riffler.KeyChange, ...]:
         """Updates what is shown, and returns what the buttons did."""
         changes = self._take(self.session.frame())
