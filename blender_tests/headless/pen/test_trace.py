@@ -103,7 +103,6 @@ def test_the_tool_stays_out_of_the_exact_surface_of_an_object_that_was_turned_an
     with_reader()
     common.scale(1)
     ob = torus((0.4, 0.1, 0.7), (3, -2, 1))
-    common.push("before")
     mouse = Mouse(2.0)
     session = session_of(ob, mouse)
     seen = over(session, mouse, [(x, 0.0) for x in np.arange(6, 34, 1.0)])
@@ -122,6 +121,20 @@ def test_the_tool_stays_out_of_the_exact_surface_of_an_object_that_was_turned_an
         assert abs(3 - off_torus(centre)[0] - depth) < 1e-5
         assert depth < 0.2
     assert abs(off_torus(traced(ob))).max() < 2e-5
+
+
+def test_undo_takes_a_traced_curve_away():
+    common.scale(1)
+    bpy.ops.surface.primitive_nurbs_surface_torus_add(radius=10)
+    ob = bpy.context.object
+    common.push("before")
+    mouse = Mouse(2.0)
+    session = session_of(ob, mouse)
+    seen = over(session, mouse, [(x, 0.0) for x in (8.0, 9.0, 10.0)])
+    assert any(contact is not None for _, contact, _ in seen)
+    session.finish()
+    no_session()
+    assert len(traced(ob)) > 1
     bpy.ops.ed.undo()
     assert not [o for o in bpy.data.objects if o.type == "CURVE"]
 
