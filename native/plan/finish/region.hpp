@@ -16,6 +16,8 @@ class Region {
 
   bool empty() const { return bands_.empty(); }
   bool holds(const Vec2& p) const;
+  /// Whether a point of the area is at most `reach` (mm) from `p`.
+  bool within(const Vec2& p, double reach) const;
 
  private:
   std::size_t band(double y) const;

@@ -54,21 +54,30 @@ class Filler {
         outline_(scene.tool),
         cusp_(kCuspShare * scene.options.cusp),
         spacing_(scene.profile.spacing(cusp_)),
-        finest_(std::max(scene.options.cusp, scene.options.tolerance)) {}
+        finest_(std::max(scene.options.cusp, scene.options.tolerance)),
+        reach_(scene.profile.radius() + scene.options.allowance),
+        count_(static_cast<int>(std::ceil((family.to - family.from) / family.step)) + 1) {}
 
   double spacing() const { return spacing_; }
 
   Row row(double v, std::vector<BlockedPlace>& blocked) const {
     Row out{v, {}};
-    add_pieces(out, family_.from, family_.to, blocked);
+    std::vector<int> samples;
+    for (int i = 0; i < count_; ++i)
+      if (near_region(i, v)) samples.push_back(i);
+    if (static_cast<int>(samples.size()) == count_)
+      add_pieces(out, family_.from, family_.to, blocked);
+    else
+      add_around(out, samples, blocked);
     return out;
   }
 
   /// Adds the rows that are needed between X and Y.
   void fill(const Row& x, const Row& y, std::vector<Row>& out) const {
-    std::vector<int> all(static_cast<std::size_t>(std::ceil((family_.to - family_.from) / family_.step)) + 1);
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-    fill(x, y, all, out);
+    std::vector<int> samples;
+    for (int i = 0; i < count_; ++i)
+      if (near_region(i, x.v) || near_region(i, 0.5 * (x.v + y.v)) || near_region(i, y.v)) samples.push_back(i);
+    if (!samples.empty()) fill(x, y, samples, out);
   }
 
  private:
@@ -93,6 +102,27 @@ class Filler {
     }
   }
 
+  /// Adds the pieces of a row around samples, which are ascending. Returns these samples and their neighbours.
+  std::vector<int> add_around(Row& row, const std::vector<int>& samples, std::vector<BlockedPlace>& blocked) const {
+    std::vector<int> out;
+    for (std::size_t i = 0; i < samples.size();) {
+      std::size_t end = i + 1;
+      while (end < samples.size() && samples[end] <= samples[end - 1] + 2) ++end;
+      add_pieces(row, std::max(family_.from, place(samples[i] - 1)), std::min(family_.to, place(samples[end - 1] + 1)),
+                 blocked);
+      for (int k = samples[i] - 1; k <= samples[end - 1] + 1; ++k)
+        if (out.empty() || out.back() < k) out.push_back(k);
+      i = end;
+    }
+    return out;
+  }
+
+  /// Whether the cutter may touch the region at places of row `v` around a sample.
+  bool near_region(int sample, double v) const {
+    const double u = std::min(place(sample), family_.to);
+    return scene_.surface.may_want(family_.at(u, v), reach_ + 2 * family_.step * family_.pace(u, v));
+  }
+
   void fill(const Row& x, const Row& y, const std::vector<int>& samples, std::vector<Row>& out) const {
     Row middle{0.5 * (x.v + y.v), {}};
     std::vector<int> open;
@@ -103,16 +133,7 @@ class Filler {
     }
     if (open.empty()) return;
     std::vector<BlockedPlace> ignored;  // the first rows have reported them
-    std::vector<int> next;
-    for (std::size_t i = 0; i < open.size();) {
-      std::size_t end = i + 1;
-      while (end < open.size() && open[end] <= open[end - 1] + 2) ++end;
-      add_pieces(middle, std::max(family_.from, place(open[i] - 1)), std::min(family_.to, place(open[end - 1] + 1)),
-                 ignored);
-      for (int k = open[i] - 1; k <= open[end - 1] + 1; ++k)
-        if (next.empty() || next.back() < k) next.push_back(k);
-      i = end;
-    }
+    const std::vector<int> next = add_around(middle, open, ignored);
     fill(x, middle, next, out);
     if (!middle.pieces.empty()) out.push_back(middle);
     fill(middle, y, next, out);
@@ -200,6 +221,8 @@ class Filler {
   const RowFamily& family_;
   tool::Outline outline_;
   double cusp_, spacing_, finest_;
+  double reach_;  // largest distance of a contact from the cutter's axis, mm
+  int count_;     // number of samples along a row
 };
 
 }  // namespace

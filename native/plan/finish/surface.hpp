@@ -27,6 +27,8 @@ class FinishSurface {
                 const std::vector<std::vector<Vec2>>& region);
 
   SurfacePoint at(const Vec2& p) const;
+  /// Whether the option `region` may select what a cutter touches that reaches this far (mm) from `p`.
+  bool may_want(const Vec2& p, double reach) const { return region_.empty() || region_.within(p, reach); }
   /// The points over the line from `from` to `to`. Straight moves between the points are at most `tolerance` below the
   /// drop surface, and where it is continuous at most `tolerance` above it. At a step they rise or sink upright, at
   /// most half the tolerance away from the step.

@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 import riffler
-from finish_judge import PARTS, Judge, boss_on_plate, cone, dome, setup_of, solid_under, steps, z_map
+from finish_judge import PARTS, Judge, boss_on_plate, cone, dome, heights, setup_of, solid_under, steps, z_map
 from machining_parts import terrain
 from riffler import plan
 
@@ -327,3 +327,18 @@ def test_real_models_are_cut_to_the_cusp_and_no_deeper(name, pattern, slopes):
             x[judge.reachable] for x in (judge.points, judge.normals, judge.reachable)
         )
     assert_kept(op, judge, least=15, cusp=0.2, tolerance=0.05)
+
+
+@pytest.mark.parametrize("pattern", ["parallel", "spiral", "radial"])
+def test_rows_in_a_small_region_need_few_points_and_cut_it_all(pattern):
+    part = dome()
+    setup = plan.Setup(part, riffler.Volume.from_mesh(part, 0.5))
+    square = np.array([[18, 14, 0], [21, 14, 0], [21, 17, 0], [18, 17, 0]], float)
+    options = {"cusp": 0.04, "tolerance": 0.01}
+    ball = riffler.Tool.ball(diameter=2, length=20)
+    whole = plan.finish(setup, ball, pattern, **options)
+    inner = plan.finish(setup, ball, pattern, region=[square], **options)
+    assert len(inner) and inner.report.stats["drops"] < 0.2 * whole.report.stats["drops"]
+    x, y = np.random.default_rng(2).uniform((18.1, 14.1), (20.9, 16.9), (300, 2)).T
+    left = z_map(inner, x, y, step=0.04) - heights(part, x, y)
+    assert left.min() >= -0.011 and left.max() <= 0.051

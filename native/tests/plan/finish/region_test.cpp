@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -53,6 +54,28 @@ TEST(Region, OfNoCurvesIsEmptyAndOneOfALevelLineHoldsNothing) {
   const Region line({{{0, 1}, {5, 1}, {9, 1}}});
   EXPECT_FALSE(line.empty());
   EXPECT_FALSE(line.holds({3, 1}));
+}
+
+TEST(Region, FindsPointsWithinADistance) {
+  const std::vector<std::vector<Vec2>> curves{star({0, 0}, 10, 60), {{20, -3}, {26, -3}, {26, 4}, {20, 4}}};
+  const Region region(curves);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> x(-14, 30), y(-14, 14), reaches(0, 4);
+  int near = 0;
+  for (int n = 0; n < 500; ++n) {
+    const Vec2 p(x(random), y(random));
+    const double reach = reaches(random);
+    double least = kInfinity;
+    for (const auto& curve : curves)
+      for (std::size_t k = 0; k < curve.size(); ++k)
+        for (int i = 0; i <= 400; ++i)
+          least = std::min(least, glm::length(glm::mix(curve[k], curve[(k + 1) % curve.size()], i / 400.0) - p));
+    if (std::abs(least - reach) < 0.03) continue;
+    const bool expected = winds(curves, p) || least < reach;
+    near += expected;
+    ASSERT_EQ(region.within(p, reach), expected) << p.x << ' ' << p.y << ' ' << reach;
+  }
+  EXPECT_GT(near, 100);
 }
 
 }  // namespace
