@@ -93,7 +93,8 @@ class Filler {
 
   /// Adds the pieces of a row that are cut between u = `a` and u = `b`.
   void add_pieces(Row& row, double a, double b, std::vector<BlockedPlace>& blocked) const {
-    const std::vector<SurfacePoint> points = scene_.surface.follow(line(a, b, row.v));
+    const std::vector<SurfacePoint> points =
+        scene_.surface.sampled(scene_.surface.follow(line(a, b, row.v)), 0.5 * spacing_);
     for (std::vector<Vec3>& tips : scene_.surface.meant_pieces(points, blocked)) {
       Row::Piece& piece = row.pieces.emplace_back(Row::Piece{std::move(tips), {}});
       double last = -kInfinity;

@@ -132,6 +132,23 @@ std::vector<SurfacePoint> FinishSurface::follow(const std::vector<Vec2>& line) c
   return out;
 }
 
+std::vector<SurfacePoint> FinishSurface::sampled(const std::vector<SurfacePoint>& points, double step) const {
+  if ((region_.empty() && chosen_.empty()) || points.empty()) return points;
+  std::vector<SurfacePoint> out{points.front()};
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const Vec2 from(points[k - 1].tip), to(points[k].tip);
+    const int pieces =
+        points[k].gap ? 1 : static_cast<int>(std::ceil(geom::hypot(to.x - from.x, to.y - from.y) / step));
+    for (int i = 1; i < pieces; ++i) {
+      if (i % 256 == 0) base::still_wanted();
+      out.push_back(at(glm::mix(from, to, static_cast<double>(i) / pieces)));
+      out.back().sample = true;
+    }
+    out.push_back(points[k]);
+  }
+  return out;
+}
+
 bool FinishSurface::meant_slope(double slope) const {
   return slope >= options_.min_slope - kSlopeSlack && slope <= options_.max_slope + kSlopeSlack;
 }
@@ -254,7 +271,8 @@ std::vector<std::vector<Vec3>> FinishSurface::meant_pieces(const std::vector<Sur
     if (!leads) finish_piece();
     if (leads && keep[k] && !keep[k - 1]) piece = {border(points[k], points[k - 1])};
     if (leads && !keep[k] && keep[k - 1]) piece.push_back(border(points[k - 1], points[k])), finish_piece();
-    if (keep[k] && (piece.empty() || piece.back() != points[k].tip)) piece.push_back(points[k].tip);
+    if (keep[k] && !points[k].sample && (piece.empty() || piece.back() != points[k].tip))
+      piece.push_back(points[k].tip);
     if (const char* reason = leads ? blocked(points[k]) : nullptr) {
       const auto same = std::find_if(blocked_places.begin(), blocked_places.end(),
                                      [&](const BlockedPlace& b) { return b.reason == reason; });

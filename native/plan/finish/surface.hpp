@@ -16,7 +16,8 @@ namespace riffler::plan {
 struct SurfacePoint {
   Vec3 tip{0};  ///< z is meaningless where nothing is touched
   DropCutter::Landing landing;
-  bool gap = false;  ///< whether the row does not lead here from the point before
+  bool gap = false;     ///< whether the row does not lead here from the point before
+  bool sample = false;  ///< whether the row is straight here, and the selection alone asks for the point
 };
 
 /// Computes curves of the drop surface over straight lines.
@@ -35,6 +36,9 @@ class FinishSurface {
   std::vector<SurfacePoint> follow(const Vec2& from, const Vec2& to) const;
   /// The same for a line through several points.
   std::vector<SurfacePoint> follow(const std::vector<Vec2>& line) const;
+  /// Such a curve with samples at most `step` (mm) apart if the option `region` is given, which may begin or end
+  /// anywhere on a straight move.
+  std::vector<SurfacePoint> sampled(const std::vector<SurfacePoint>& points, double step) const;
   /// The parts of such a curve where the cutter touches selected faces. Adds places that the tool cannot reach to
   /// `blocked`.
   std::vector<std::vector<Vec3>> meant_pieces(const std::vector<SurfacePoint>& points,

@@ -342,3 +342,18 @@ def test_rows_in_a_small_region_need_few_points_and_cut_it_all(pattern):
     x, y = np.random.default_rng(2).uniform((18.1, 14.1), (20.9, 16.9), (300, 2)).T
     left = z_map(inner, x, y, step=0.04) - heights(part, x, y)
     assert left.min() >= -0.011 and left.max() <= 0.051
+
+
+def test_a_region_in_a_long_face_is_cut_in_whole_rows():
+    """A straight row needs no point between the ends of a long face, which are both outside of the region."""
+    side = 200.0
+    part = solid_under(np.array([0, side]), np.full((2, 2), 5.0))
+    square = np.array([(120, 20, 0), (140, 20, 0), (140, 40, 0), (120, 40, 0)], float)
+    setup = plan.Setup(part, riffler.Volume.block((0, 0, 0), (side, side, 7), pitch=2))
+    op = plan.finish(setup, BALL, "parallel", cusp=0.05, tolerance=0.02, region=[square])
+    cut = np.flatnonzero(op.kind[1:] == 2)
+    ways = op.poses[cut + 1, :3] - op.poses[cut, :3]
+    spacing = 2 * math.sqrt(2 * 3 * 0.05)
+    assert len(cut) <= 30 and np.linalg.norm(ways, axis=1).sum() < 1.25 * 20 * 20 / spacing
+    x, y = np.random.default_rng(3).uniform(20.1, 39.9, (2, 400))
+    assert (z_map(op, x + 100, y, step=0.04) - 5).max() <= 0.071

@@ -229,6 +229,8 @@ def test_rest_is_reported_where_there_is_none():
     assert len(op) == 0 and op.reason == "no material thicker than 0.5 mm stands on the part where the tool reaches"
     with pytest.raises(ValueError, match=r"^reference_tool: needs rest"):
         plan.finish(setup, tool, reference_tool=tool)
+    with pytest.raises(TypeError, match="give the tool as reference_tool"):
+        plan.finish(setup, tool, rest=tool)
     with pytest.raises(ValueError, match=r"^rest: give either rest or curves as region"):
         plan.finish(setup, tool, rest=0.1, region=[[(0, 0, 0), (9, 0, 0), (0, 9, 0)]])
     with pytest.raises(ValueError, match=r"^above must be positive and finite, not 0"):

@@ -68,6 +68,8 @@ def rest_region(
     (1, True)
     """
     setup = setup.along(orientation)
+    if isinstance(above, Tool):
+        raise TypeError("the rest is a height in mm, as 0.1; give the tool as reference_tool")
     if not (math.isfinite(above) and above > 0):
         raise ValueError(f"above must be positive and finite, not {above}")
     if not (math.isfinite(allowance) and allowance >= 0):
