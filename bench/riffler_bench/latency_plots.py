@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -42,8 +44,9 @@ def stages(data: Data) -> Figure | None:
 
 
 def listed(data: Data, window: bool) -> list[tuple[str, Data]]:
-    """Names and rows: ours and, below each, the brushes of the same Blender and size."""
+    """Names and rows, of the newest Blender first: ours and, below each, the brushes of the same Blender and size."""
     mine = [row for row in rows(data, "stroke") if row.get("window") is window and "p50_s" in row]
+    mine.sort(key=lambda row: [-int(number) for number in re.findall(r"\d+", row["where"])])
     theirs = [row for row in rows(data, "sculpt") if row.get("window") is window and "p50_s" in row]
     out = []
     for row in mine:
