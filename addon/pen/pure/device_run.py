@@ -14,6 +14,7 @@ class DeviceRun:
     """Mixin: `device` is open, `session` is riffler's, and `state` that of the force as of the last frame."""
 
     device, session, state = None, None, "off"
+    push = np.zeros((2, 3))  # N, N·mm about the tool's tip: on the tool, as of the last frame
     axes = None  # view_turn.ViewTurn; None: the device's axes are those of the tool's frame
     workspace: ClassVar[dict] = {}  # of riffler.Session.set_workspace, for a turn
 
@@ -63,6 +64,23 @@ class DeviceRun:
 
     def start(self) -> None:
         self.session.start()
+
+    def look(self):
+        """Takes what happened since the last call, and returns what the class takes from a frame."""
+        taken = self._take(self.session.frame())
+        self.heal()
+        return taken
+
+    def halt(self) -> str:
+        """Stops the device's forces and the session. Returns the session's problem, or ""."""
+        try:
+            if self.running:
+                self._take(self.session.stop())
+        except RuntimeError as error:
+            return str(error)
+        finally:
+            self.push = np.zeros((2, 3))
+        return ""
 
     def close(self) -> None:
         self.device.stop()

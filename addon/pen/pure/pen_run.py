@@ -25,7 +25,6 @@ class PenRun(DeviceRun):
         self.device, self._tool, self._options = device, tool, dict(options)
         self.session = None
         self.pose: np.ndarray | None = None  # (6,) pose of the tool, mm
-        self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last poll
         self.state, self.force, self.why = "off", 0.0, ""  # the force on the hand
         self.strokes, self.in_stroke = 0, False  # counts of this session
         self.dropped_ticks = 0  # steps that were dropped because they were not polled in time
@@ -43,21 +42,10 @@ class PenRun(DeviceRun):
         self._rows.clear()
         return self.session
 
-    def look(self) -> None:
-        """Brings the volume up to date."""
-        self._take(self.session.frame())
-        self.heal()
-
     def halt(self) -> str:
-        """Stops the device's forces and the session, and updates the volume. Returns the session's problem, or ""."""
-        try:
-            if self.running:
-                self._take(self.session.stop())
-        except RuntimeError as error:
-            return str(error)
-        finally:
-            self.in_stroke, self.push = False, np.zeros((2, 3))
-        return ""
+        problem = super().halt()
+        self.in_stroke = False
+        return problem
 
     def taken_rows(self) -> list[np.ndarray]:
         """The poses (n, 6) of each stroke finished since the last call."""

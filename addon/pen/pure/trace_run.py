@@ -61,27 +61,10 @@ class TraceRun(DeviceRun):
         stock = riffler.Volume.block((0, 0, 0), (1, 1, 1), pitch=1.0)
         self.session = riffler.Session(stock, tool, device, obstacles=collider, protect=stock.copy(), **options)
         self.pose: np.ndarray | None = None  # (6,) pose of the tool, mm
-        self.push = np.zeros((2, 3))  # N, N·mm about its tip: of the surface on the tool
         self.state, self.force, self.why = "off", 0.0, ""  # the force on the hand
         self.depth, self.part = 0.0, ""  # mm; the deepest part of the tool, "" if it is free
         self.contact: tuple[np.ndarray, np.ndarray] | None = None  # deepest point and normal of the surface there
         self.traces = Traces()
-
-    def look(self) -> None:
-        """Updates what is shown, and the traces."""
-        self._take(self.session.frame())
-        self.heal()
-
-    def halt(self) -> str:
-        """Stops the device's forces and the session. Returns the session's problem, or ""."""
-        try:
-            if self.running:
-                self._take(self.session.stop())
-        except RuntimeError as error:
-            return str(error)
-        finally:
-            self.push = np.zeros((2, 3))
-        return ""
 
     def _take(self, frame) -> None:
         self.state, self.force = frame.state, float(np.linalg.norm(frame.force))

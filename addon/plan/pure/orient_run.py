@@ -20,6 +20,7 @@ def point_at(station: float, last: int, points: int, closed: bool) -> int:
 
 class OrientRun(DeviceRun):
     """An open device and its session on one path: `start`, `look` about thirty times a second, `halt`; finally `close`.
+    `look` and `halt` return what the buttons did.
 
     `options` are riffler.OrientSession's; `view`: the device's axes follow a view.
     """
@@ -30,17 +31,10 @@ class OrientRun(DeviceRun):
         self.session = riffler.OrientSession(path, tool, collider, device, **options)
         self.pose: np.ndarray | None = None  # (6,) pose of the tool, mm
         self.station = 0.0  # place on the path: a point index with a fraction
-        self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last poll
         self.state, self.force, self.torque, self.why = "off", 0.0, 0.0, ""  # the force on the hand
         self.touching: str | None = None  # part of the tool, or "fixture"
         self.point = options.get("point", 0)  # of the path, see point_at
         self._points, self._closed = len(path), path.closed
-
-    def look(self) -> tuple[riffler.KeyChange, ...]:
-        """Updates what is shown, and returns what the buttons did."""
-        changes = self._take(self.session.frame())
-        self.heal()
-        return changes
 
     def halt(self) -> tuple[riffler.KeyChange, ...]:
         """Stops the device's forces and the session, and returns what the last presses did."""
