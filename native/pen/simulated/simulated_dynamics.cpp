@@ -11,7 +11,6 @@ namespace riffler::pen {
 
 namespace {
 
-constexpr std::size_t kJoints = 6;
 constexpr double kMilli = 1e-3;  // kg to N·s²/mm, kg·mm² to N·mm·s²
 /// Stops at the joints' limits: stiffness N·mm/rad, stiff for a hand and soft for a step, and damping N·mm·s/rad.
 constexpr double kStop = 5e4, kStopDrag = 20;
@@ -29,12 +28,6 @@ JointVector vector_of(const JointAngles& angles) {
   return out;
 }
 
-double dot(const JointVector& a, const JointVector& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < kJoints; ++k) sum += a[k] * b[k];
-  return sum;
-}
-
 /// How far `angle` is outside its limits: negative below, positive above.
 double beyond(double angle, double low, double high) {
   return std::min(angle - low, 0.0) + std::max(angle - high, 0.0);
@@ -47,82 +40,6 @@ Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept {
   const double sine = glm::length(normal);
   return sine > 0 ? base::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
 }
-
-/// Jacobian of the joints: columns for the grip's middle and for r_L − r_R, base frame.
-struct PenDynamics::Reach {
-  std::array<Vec3, kJoints> middle, apart;
-  Vec3 along;
-  double length;
-
-  explicit Reach(const PenPosture& posture) : along(posture.apart / posture.length), length(posture.length) {
-    for (std::size_t k = 0; k < kJoints; ++k) {
-      const Vec3 column = posture.arms[k / 3].jacobian[static_cast<int>(k % 3)];
-      middle[k] = 0.5 * column;
-      apart[k] = k < 3 ? -column : column;
-    }
-  }
-  Vec3 of_middle(const JointVector& v) const { return sum(middle, v); }
-  Vec3 of_apart(const JointVector& v) const { return sum(apart, v); }
-  /// Gradient of the grip's length.
-  JointVector stretch() const {
-    JointVector out;
-    for (std::size_t k = 0; k < kJoints; ++k) out[k] = glm::dot(along, apart[k]);
-    return out;
-  }
-  /// Transposed Jacobian times a mass at the middle, and times an inertia of `turning` / length² for motion of the ends
-  /// apart.
-  JointVector back(double mass, const Vec3& of_middle, double turning, const Vec3& of_apart) const {
-    JointVector out;
-    for (std::size_t k = 0; k < kJoints; ++k)
-      out[k] = mass * glm::dot(middle[k], of_middle) + turning / (length * length) * glm::dot(apart[k], of_apart);
-    return out;
-  }
-
- private:
-  static Vec3 sum(const std::array<Vec3, kJoints>& columns, const JointVector& v) {
-    Vec3 out(0);
-    for (std::size_t k = 0; k < kJoints; ++k) out += v[k] * columns[k];
-    return out;
-  }
-};
-
-/// Solves A x = b subject to the constraint, A symmetric and positive definite, by Cholesky and the constraint's force.
-struct PenDynamics::Mobility {
-  std::array<JointVector, kJoints> lower;  // Cholesky factor
-  JointVector stretch, answer;             // gradient of the constraint, and A⁻¹ times it
-  double give = 0;
-
-  Mobility(const std::array<JointVector, kJoints>& matrix, const JointVector& gradient)
-      : lower(matrix), stretch(gradient) {
-    for (std::size_t j = 0; j < kJoints; ++j)
-      for (std::size_t i = j; i < kJoints; ++i) {
-        double value = matrix[i][j];
-        for (std::size_t k = 0; k < j; ++k) value -= lower[i][k] * lower[j][k];
-        lower[i][j] = i == j ? std::sqrt(value) : value / lower[j][j];
-      }
-    answer = free(gradient);
-    give = dot(gradient, answer);
-  }
-  /// Without the constraint.
-  JointVector free(JointVector b) const {
-    for (std::size_t i = 0; i < kJoints; ++i) {
-      for (std::size_t k = 0; k < i; ++k) b[i] -= lower[i][k] * b[k];
-      b[i] /= lower[i][i];
-    }
-    for (std::size_t i = kJoints; i-- > 0;) {
-      for (std::size_t k = i + 1; k < kJoints; ++k) b[i] -= lower[k][i] * b[k];
-      b[i] /= lower[i][i];
-    }
-    return b;
-  }
-  /// With stretch · x = `grows`.
-  JointVector solve(const JointVector& b, double grows) const {
-    JointVector x = free(b);
-    const double pull = (dot(stretch, x) - grows) / give;
-    for (std::size_t k = 0; k < kJoints; ++k) x[k] -= pull * answer[k];
-    return x;
-  }
-};
 
 PenDynamics::PenDynamics(const PenGeometry& geometry)
     : pen_(geometry), grip_mass_(kMilli * geometry.grip_mass), grip_inertia_(kMilli * geometry.grip_inertia) {
@@ -143,6 +60,7 @@ bool PenDynamics::place(const Pose& pose) {
   const PenInverse found = pen_.inverse(pose);
   if (!found.reached()) return false;
   posture_ = pen_.posture(found.angles);
+  forget_posture();
   rates_ = {};
   rubbing_ = {};
   account_ = {};
@@ -162,18 +80,19 @@ void PenDynamics::hold(const PenLoad& load) {
   if (mass == held_mass_ && inertia == held_inertia_) return;
   const double before = kinetic();
   held_mass_ = mass, held_inertia_ = inertia;
+  forget_posture();
   account_.hand += kinetic() - before;
 }
 
 /// For the inertia plus half the damping over `time` with a load.
-PenDynamics::Mobility PenDynamics::mobility(const Reach& reach, const PenLoad* load, double time) const {
+JointMobility PenDynamics::mobility(const JointReach& reach, const PenLoad* load, double time) const {
   const double share = load ? time / 2 : 0;
   const haptics::Bounds damping = load ? load->damping : haptics::Bounds{0, 0};
   const double mass = grip_mass_ + held_mass_ + share * damping.linear;
   const double turning = (grip_inertia_ + held_inertia_ + share * damping.angular) / (reach.length * reach.length);
-  std::array<JointVector, kJoints> matrix;
+  std::array<JointVector, kJoints> matrix{};
   for (std::size_t i = 0; i < kJoints; ++i)
-    for (std::size_t j = 0; j < kJoints; ++j)
+    for (std::size_t j = 0; j <= i; ++j)
       matrix[i][j] =
           mass * glm::dot(reach.middle[i], reach.middle[j]) + turning * glm::dot(reach.apart[i], reach.apart[j]);
   const JointVector drags = load ? drag(*load) : JointVector{};
@@ -219,7 +138,7 @@ Wrench PenDynamics::hand(const PenLoad& load) const {
                 geom::clamp_length(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
 }
 
-JointVector PenDynamics::pushed(const Reach& reach, const Wrench& wrench) const {
+JointVector PenDynamics::pushed(const JointReach& reach, const Wrench& wrench) const {
   const Wrench in_base{pen_.to_base(wrench.force), pen_.to_base(wrench.torque)};
   // A torque turns the ends about each other: as a force on r_L − r_R it is τ × r / |r|².
   const Vec3 couple = glm::cross(in_base.torque, posture_.apart);
@@ -228,7 +147,7 @@ JointVector PenDynamics::pushed(const Reach& reach, const Wrench& wrench) const 
 
 double PenDynamics::kinetic() const {
   const JointVector v = vector_of(rates_);
-  const Reach reach(posture_);
+  const JointReach reach(posture_);
   const Vec3 middle = reach.of_middle(v), turning = reach.of_apart(v) / reach.length;
   double twice = (grip_mass_ + held_mass_) * glm::dot(middle, middle) +
                  (grip_inertia_ + held_inertia_) * glm::dot(turning, turning);
@@ -262,12 +181,38 @@ PenEnergy PenDynamics::energy() const {
   return out;
 }
 
+/// What the drift needs: the inertia without a load.
+const PenDynamics::Free& PenDynamics::free() {
+  if (!free_) {
+    const JointReach reach(posture_);
+    free_ = Free{reach, mobility(reach, nullptr, 0)};
+  }
+  return *free_;
+}
+
+/// What a kick needs. A step ends with a kick at the posture at which the next one begins with a kick, most often with
+/// the same damping.
+const PenDynamics::Loaded& PenDynamics::loaded(const PenLoad& load, double time) {
+  if (loaded_ && loaded_->time == time && loaded_->brake == load.brake &&
+      loaded_->damping.linear == load.damping.linear && loaded_->damping.angular == load.damping.angular)
+    return *loaded_;
+  const JointReach reach(posture_);
+  const JointMobility mobility = this->mobility(reach, &load, time);
+  loaded_ = Loaded{time, load.damping, load.brake, reach, mobility, drag(load), weight_torques(), stop_torques(), {}};
+  for (std::size_t k = 0; k < kJoints; ++k) loaded_->columns[k] = mobility.column(k);
+  return *loaded_;
+}
+
+void PenDynamics::forget_posture() {
+  free_.reset(), loaded_.reset();
+}
+
 /// Applies all forces for `time` at a fixed posture: M Δv = time · (f − B v̄) − friction's impulse, v̄ the mean of both
 /// ends.
 void PenDynamics::kick(const PenLoad& load, double time) {
-  const Reach reach(posture_);
-  const Mobility mobility = this->mobility(reach, &load, time);
-  const JointVector before = vector_of(rates_), drags = drag(load), weight = weight_torques(), stops = stop_torques();
+  const Loaded& at = loaded(load, time);
+  const JointReach& reach = at.reach;
+  const JointVector before = vector_of(rates_);
   const JointVector motors = vector_of(joint_torques(pen_.geometry(), load.motors));
   const JointVector hand = pushed(reach, this->hand(load));
   const auto held_back = [&](const JointVector& v) {
@@ -276,29 +221,23 @@ void PenDynamics::kick(const PenLoad& load, double time) {
   const JointVector held = held_back(before);
   JointVector impulse;
   for (std::size_t k = 0; k < kJoints; ++k)
-    impulse[k] =
-        time * (motors[k] + hand[k] + (1 - load.borne) * weight[k] + stops[k] - held[k] - drags[k] * before[k]);
-  JointVector v = mobility.solve(impulse, -dot(mobility.stretch, before));
+    impulse[k] = time * (motors[k] + hand[k] + (1 - load.borne) * at.weight[k] + at.stops[k] - held[k] -
+                         at.drags[k] * before[k]);
+  JointVector v = at.mobility.solve(impulse, -dot(at.mobility.stretch, before));
   for (std::size_t k = 0; k < kJoints; ++k) v[k] += before[k];
 
   // Dry friction minimises the remaining energy: one joint after the other until none changes (projected Gauss–Seidel;
   // converges because the matrix is positive definite).
-  std::array<JointVector, kJoints> answers;
   const auto rub = [&](std::size_t k, double by) {
-    for (std::size_t i = 0; i < kJoints; ++i) v[i] -= by * answers[k][i];
+    for (std::size_t i = 0; i < kJoints; ++i) v[i] -= by * at.columns[k][i];
   };
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    JointVector unit{};
-    unit[k] = 1;
-    answers[k] = mobility.solve(unit, 0);
-    rub(k, time * rubbing_[k]);
-  }
+  for (std::size_t k = 0; k < kJoints; ++k) rub(k, time * rubbing_[k]);
   for (int sweep = 0; sweep < 100; ++sweep) {
     double changed = 0;
     for (std::size_t k = 0; k < kJoints; ++k) {
       if (coulomb_[k] == 0) continue;
       const double last = rubbing_[k];
-      rubbing_[k] = std::clamp(last + v[k] / (time * answers[k][k]), -coulomb_[k], coulomb_[k]);
+      rubbing_[k] = std::clamp(last + v[k] / (time * at.columns[k][k]), -coulomb_[k], coulomb_[k]);
       rub(k, time * (rubbing_[k] - last));
       changed = std::max(changed, std::abs(rubbing_[k] - last) / coulomb_[k]);
     }
@@ -309,14 +248,13 @@ void PenDynamics::kick(const PenLoad& load, double time) {
   for (std::size_t k = 0; k < kJoints; ++k) mean[k] = 0.5 * (before[k] + v[k]), entry(rates_, k) = v[k];
   account_.motors += time * dot(motors, mean);
   account_.hand += time * (dot(hand, mean) - dot(held_back(mean), mean));
-  account_.borne -= time * load.borne * dot(weight, mean);
-  for (std::size_t k = 0; k < kJoints; ++k) account_.lost += time * (drags[k] * mean[k] + rubbing_[k]) * mean[k];
+  account_.borne -= time * load.borne * dot(at.weight, mean);
+  for (std::size_t k = 0; k < kJoints; ++k) account_.lost += time * (at.drags[k] * mean[k] + rubbing_[k]) * mean[k];
 }
 
 /// Free motion for `time`: the momentum that leaves a posture arrives at the next.
 void PenDynamics::drift(double time) {
-  const Reach from(posture_);
-  const Mobility mobility = this->mobility(from, nullptr, 0);
+  const auto [from, mobility] = free();
   const PenPosture start = posture_;
   const Vec3 start_middle = 0.5 * (start.arms[0].end + start.arms[1].end);
   const double mass = grip_mass_ + held_mass_, inertia = grip_inertia_ + held_inertia_;
@@ -342,10 +280,11 @@ void PenDynamics::drift(double time) {
     for (std::size_t k = 0; k < kJoints; ++k) way[k] += change[k];
   }
 
-  const Reach to(posture_);
-  JointVector momentum = to.back(mass, went / time, inertia, turned / time);
+  forget_posture();
+  const Free& to = free();
+  JointVector momentum = to.reach.back(mass, went / time, inertia, turned / time);
   for (std::size_t k = 0; k < kJoints; ++k) momentum[k] += inertia_[k] * way[k] / time;
-  const JointVector v = this->mobility(to, nullptr, 0).solve(momentum, 0);
+  const JointVector v = to.mobility.solve(momentum, 0);
   for (std::size_t k = 0; k < kJoints; ++k) entry(rates_, k) = v[k];
 }
 

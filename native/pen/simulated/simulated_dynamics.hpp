@@ -13,7 +13,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "pen/simulated/joint_mobility.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
 #include "riffler/pen/arms/motors.hpp"
 
@@ -21,8 +23,6 @@ namespace riffler::pen {
 
 /// The rotation vector of the shortest rotation between two unit vectors; zero for opposite ones.
 Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept;
-
-using JointVector = std::array<double, 6>;  // θ1 θ2 θ3 of R, then of L
 
 /// Loads on the pen during a step. Wrench and damping are about the grip's pivot, in the pose frame.
 struct PenLoad {
@@ -66,14 +66,28 @@ class PenDynamics {
   PenEnergy energy() const;
 
  private:
-  struct Reach;
-  struct Mobility;
-  Mobility mobility(const Reach& reach, const PenLoad* load, double time) const;
+  struct Free {
+    JointReach reach;
+    JointMobility mobility;
+  };
+  struct Loaded {
+    double time;
+    haptics::Bounds damping;
+    bool brake;
+    JointReach reach;
+    JointMobility mobility;
+    JointVector drags, weight, stops;
+    std::array<JointVector, kJoints> columns;  // of the mobility
+  };
+  const Free& free();
+  const Loaded& loaded(const PenLoad& load, double time);
+  void forget_posture();
+  JointMobility mobility(const JointReach& reach, const PenLoad* load, double time) const;
   JointVector drag(const PenLoad& load) const;
   JointVector stop_torques() const;
   JointVector weight_torques() const;
   Wrench hand(const PenLoad& load) const;
-  JointVector pushed(const Reach& reach, const Wrench& wrench) const;
+  JointVector pushed(const JointReach& reach, const Wrench& wrench) const;
   double kinetic() const;
   double potential() const;
   void hold(const PenLoad& load);
@@ -87,6 +101,8 @@ class PenDynamics {
   PenPosture posture_{};
   JointAngles rates_{};
   double held_mass_ = 0, held_inertia_ = 0;  // units as for the grip
+  std::optional<Free> free_;                 // at posture_ with the held mass
+  std::optional<Loaded> loaded_;             // of the last kick, if it was there
   JointVector rubbing_{};                    // dry friction of the last kick, N·mm: start of the next search
   PenEnergy account_{};
 };
