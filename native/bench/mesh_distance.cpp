@@ -108,4 +108,11 @@ std::vector<double> MeshDistance::operator()(std::span<const Vec3> points) const
   return out;
 }
 
+double MeshDistance::farthest(std::span<const Vec3> points) const {
+  double worst = 0;
+  int near = 0;
+  for (const Vec3& p : points) worst = std::max(worst, (*this)(p, worst, &near));
+  return worst;
+}
+
 }  // namespace riffler::bench

@@ -46,6 +46,8 @@ TEST(MeshDistance, IsThatToTheNearestTriangle) {
       worst = std::max(worst, distance(points[n], worst, &near)), expected = std::max(expected, every);
       EXPECT_NEAR(worst, expected, 1e-12) << n << ", " << thin;
     }
+    EXPECT_NEAR(distance.farthest(points), expected, 1e-12) << thin;
+    EXPECT_EQ(distance.farthest({}), 0);
   }
 }
 

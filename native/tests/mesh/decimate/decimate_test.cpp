@@ -32,8 +32,7 @@ double one_way(const Mesh& from, const Mesh& to) {
       for (int j = 0; i + j <= n; ++j)
         points.push_back((a * (n - i - j * 1.0) + b * (i * 1.0) + c * (j * 1.0)) / (n * 1.0));
   }
-  const std::vector<double> d = bench::MeshDistance(to)(points);
-  return *std::max_element(d.begin(), d.end());
+  return bench::MeshDistance(to).farthest(points);
 }
 
 void expect_sound(const Mesh& mesh) {

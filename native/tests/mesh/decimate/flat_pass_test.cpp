@@ -28,8 +28,7 @@ double one_way(const Mesh& from, const Mesh& to) {
   for (const Vec3i& t : from.triangles)
     for (const Vec3& w : {Vec3(0.34, 0.33, 0.33), Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.9, 0.05, 0.05)})
       points.push_back(w.x * from.vertices[t.x] + w.y * from.vertices[t.y] + w.z * from.vertices[t.z]);
-  const std::vector<double> d = bench::MeshDistance(to)(points);
-  return *std::max_element(d.begin(), d.end());
+  return bench::MeshDistance(to).farthest(points);
 }
 
 Mesh flat_sheet(int n) {
