@@ -129,7 +129,7 @@ TEST(ExactCollider, KeepsToTheBordersOfPatches) {
     hole.emplace_back(0.5 + 0.2 * std::cos(a), 0.5 + 0.2 * std::sin(a));
   }
   plate.trims = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, hole};
-  const Collider collider(Surface({plate}));
+  const Collider collider(Surface({plate}), {}, few_points());
   const Assembly assembly(cutters::flat(6, 30));
   for (const double x : {0.0, 0.4, 0.9})
     EXPECT_NEAR(collider.clearance(assembly, {{x, 0, -5}, {0, 0, 1}}), 4 * std::cos(kPi / kPoints) - 3 - x, 1e-5) << x;
@@ -184,7 +184,7 @@ TEST(ExactCollider, AgreesWithNearestPointsOnWavyPatches) {
 }
 
 TEST(ExactCollider, EndsWhereABallLiesInAGrooveOfItsRadius) {
-  const Collider collider(Surface({shapes::turned(shapes::line({3, 0}, {3, 20}))}));
+  const Collider collider(Surface({shapes::turned(shapes::line({3, 0}, {3, 20}))}), {}, few_points());
   const Assembly assembly(cutters::ball(6, 30));
   const Contact contact = collider.query(assembly, {{0, 0, 5}, {0, 0, 1}}, 0.01);
   EXPECT_NEAR(contact.depth, 0, 1e-5);
