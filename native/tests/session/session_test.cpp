@@ -191,7 +191,7 @@ TEST(Session, AddedMaterialIsNotFelt) {
 
 TEST(Session, ThatAddsMaterialKeepsTheToolOutOfObstacles) {
   const auto plate =
-      std::make_shared<collide::Collider>(test::box_mesh({-200, -200, -11}, {200, 200, -1}), std::vector<Volume>{},
+      std::make_shared<collide::Collider>(test::box_mesh({-80, -80, -11}, {80, 80, -1}), std::vector<Volume>{},
                                           collide::Collider::Settings{.spacing = 0.3, .stiffness = 1e3});
   SessionSettings settings;
   settings.mode = sweep::CarveMode::Add;
