@@ -49,12 +49,15 @@ def press(screen, at, value, kind="LEFTMOUSE", **modifiers):
 
 def drag(screen, way, release=True):
     """Along pixels, slowly enough that the handle under the pointer is found."""
+    found = screen.pixels.gizmos
+    screen.pixels.find_gizmos()
     screen.move(*map(int, way[0] + (3, 3)))
     yield 0.3
     screen.move(*map(int, way[0]))
     yield 0.6
     press(screen, way[0], "PRESS")
     yield 0.2
+    screen.pixels.find_gizmos(found)
     for at in way[1:]:
         screen.move(*map(int, at))
         yield 0.15
@@ -104,6 +107,7 @@ def steps(screen):
     with screen.override():
         assert bpy.ops.wm.tool_set_by_id(name="riffler.plan") == {"FINISHED"}
     bpy.ops.ed.undo_push(message="Timeline")
+    screen.pixels.find_gizmos()
     screen.to_view()
     yield 1.0
     yield quiet

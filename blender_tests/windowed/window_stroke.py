@@ -91,11 +91,13 @@ def handles(screen):
     base, far = (pixel(screen, middle + np.array([x, 0, 0])) for x in (4, 14))
     along = (far - base) / np.linalg.norm(far - base)
     grip = (base + 18 * along).round().astype(int)
+    screen.pixels.find_gizmos()
     for step in (-3, 0):
         screen.move(*map(int, grip + step))
         yield 0.7
     press(screen, *grip, "PRESS")
     yield 0.3
+    screen.pixels.find_gizmos(False)
     for share in (0.3, 0.6, 1.0):
         screen.move(*map(int, grip + share * (far - base)))
         yield 0.5
