@@ -66,10 +66,11 @@ def problems(root: Path = ROOT) -> list[str]:
         if folder.is_dir() and any(folder.rglob("*.py")) and folder.name not in [*order, "_vendor"]
     ]
     for path in sorted(p for folder in order for p in (addon / folder).rglob("*.py")):
-        own = path.relative_to(addon).with_suffix("").parts
+        name = path.relative_to(addon)
+        own = name.with_suffix("").parts
         rank = order.index(own[0])
         for line, module in imports(addon, path):
-            place = f"{addon.name}/{path.relative_to(addon)}:{line}"
+            place = f"{addon.name}/{name}:{line}"
             if isinstance(module, str):
                 if is_pure(own) and OF_BLENDER.fullmatch(module.partition(".")[0]):
                     found.append(f"{place}: a pure module imports {module}, which only Blender has")

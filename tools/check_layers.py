@@ -92,8 +92,9 @@ def topics(root: Path) -> list[str]:
 def lines(root: Path, folder: Path, *suffixes: str) -> Iterator[tuple[str, str]]:
     for path in sorted(folder.rglob("*")):
         if path.suffix in suffixes:
+            name = path.relative_to(root)
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                yield f"{path.relative_to(root)}:{number}", line
+                yield f"{name}:{number}", line
 
 
 def includes(root: Path, folder: Path) -> Iterator[tuple[str, str, str]]:
