@@ -5,7 +5,8 @@ import subprocess
 
 import pytest
 
-from shell import PYTHON, ROOT
+import check_types
+from shell import PYTHON, ROOT, StepError
 
 CHECKER = ROOT / ".envs" / "types" / "bin" / "basedpyright"
 RIGHT = """import riffler
@@ -35,3 +36,44 @@ def test_a_script_is_checked_against_the_stub(tmp_path, line, rule):
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     found = [d["rule"] for d in json.loads(done.stdout)["generalDiagnostics"] if d["severity"] == "error"]
     assert found == ([rule] if rule else [])
+
+
+def test_what_agreed_is_not_checked_again_until_something_changes(tmp_path, monkeypatch):
+    package, runs = tmp_path / "examples", []
+    for path, text in ((package / "a.py", "x = 1\n"), (tmp_path / "pyproject.toml", ""), (tmp_path / "types.txt", "")):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    checker = tmp_path / "check_types.py"
+    checker.write_text("")
+    python = tmp_path / ".venv" / "bin" / "python"
+    for name, value in {"ROOT": tmp_path, "REQUIREMENTS": tmp_path, "PYTHON": python, "__file__": checker}.items():
+        monkeypatch.setattr(check_types, name, value)
+    monkeypatch.setattr("shell.ROOT", tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(check_types, "types_environment", lambda: tmp_path)
+
+    def check(*command):
+        runs.append(command)
+        if "bad" in (package / "a.py").read_text():
+            raise StepError("it does not agree")
+
+    monkeypatch.setattr(check_types, "run", check)
+
+    def checked():
+        before = len(runs)
+        check_types.entry()
+        return len(runs) > before
+
+    assert checked() and not checked()
+    (package / "b.pyi").write_text("y: int\n")
+    assert checked() and not checked()
+    (tmp_path / "pyproject.toml").write_text("[tool.basedpyright]\n")
+    assert checked() and not checked()
+    (tmp_path / ".venv" / "lib" / "python3.11" / "site-packages" / "numpy-3.0.dist-info").mkdir(parents=True)
+    assert checked() and not checked()
+    (package / "a.py").write_text("bad\n")
+    for _ in range(2):  # a failure is not remembered
+        with pytest.raises(StepError):
+            check_types.entry()
+    (package / "a.py").write_text("x = 1\n")
+    assert not checked()
