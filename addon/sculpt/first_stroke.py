@@ -293,10 +293,12 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
             raise ValueError(why)
         if sculpts.is_sculpt(source):
             raise ValueError(f"{source.name} is a sculpt already: select it, and stroke it")
+        pitch, diameter = self.pitch, self.diameter
         if not self.side:
-            self.side = fit.side(context, _units(source))
-        elif not (self.pitch and self.diameter):
+            self.side = fit.side(context, _units(source))  # sets pitch and cutter
+        elif not (pitch and diameter):
             _fit(self, context)
+        self.pitch, self.diameter = pitch or self.pitch, diameter or self.diameter
 
 
 class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):

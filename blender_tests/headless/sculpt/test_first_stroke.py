@@ -81,6 +81,22 @@ def test_a_given_size_is_used_and_pitch_and_cutter_follow():
     assert np.isclose(tool.diameter, 0.8) and np.isclose(tool.length, 4)
 
 
+def test_a_given_pitch_or_cutter_is_used_with_or_without_a_size():
+    given = ({"pitch": 2.0}, {"diameter": 7.0}, {"side": 20.0, "pitch": 2.0}, {"side": 20.0, "diameter": 7.0})
+    for settings in given:
+        bpy.ops.wm.read_homefile()
+        cube = bpy.data.objects["Cube"]
+        cube.scale = (1, 0.1, 0.1)  # thin: few triangles
+        bpy.context.view_layer.update()
+        common.select(cube)
+        assert bpy.ops.riffler.make_sculpt(**settings) == {"FINISHED"}
+        p, tool = bpy.context.object.data.riffler, bpy.context.scene.riffler.tool
+        side = settings.get("side", 100)
+        assert np.isclose(max(np.subtract(p.upper, p.lower)), side)
+        assert np.isclose(p.pitch, settings.get("pitch", side / 200)), settings
+        assert np.isclose(tool.diameter, settings.get("diameter", side / 10)), settings
+
+
 def test_other_sculpts_keep_the_scenes_units():
     common.scale(1)
     common.stock()
