@@ -13,30 +13,32 @@ def size(ob):
 
 def test_an_assembly_comes_in_scene_units_with_faces_and_colours():
     with_reader()
-    for mm in (1.0, 1000.0):
-        common.scale(mm)
-        assert bpy.ops.riffler.import_cad(filepath=part("assembly.step")) == {"FINISHED"}
-        ob = bpy.context.object
-        assert ob.name.startswith("assembly") and np.allclose(size(ob) * mm, (40, 20, 17), atol=1e-3)
-        faces = np.empty(len(ob.data.polygons), np.int32)
-        ob.data.attributes["riffler_face"].data.foreach_get("value", faces)
-        assert len(np.unique(faces)) == 12
-        (top,) = (n for n, name in enumerate(ob.data["riffler_cad_faces"]) if name == "datum A")
-        heights = [ob.data.vertices[v].co.z * mm for p in ob.data.polygons if faces[p.index] == top for v in p.vertices]
-        assert len(heights) == 6 and np.allclose(heights, 5, atol=1e-3)
-        named = {p.material_index for p in ob.data.polygons if faces[p.index] == top}
-        assert {ob.data.materials[k].name for k in named} == {"CAD #CC331A"}
-        assert len({p.material_index for p in ob.data.polygons}) == 3  # red, blue, none
+    common.scale(1000)
+    assert bpy.ops.riffler.import_cad(filepath=part("assembly.step")) == {"FINISHED"}
+    ob = bpy.context.object
+    assert ob.name.startswith("assembly") and np.allclose(size(ob) * 1000, (40, 20, 17), atol=1e-3)
+    faces = np.empty(len(ob.data.polygons), np.int32)
+    ob.data.attributes["riffler_face"].data.foreach_get("value", faces)
+    assert len(np.unique(faces)) == 12
+    (top,) = (n for n, name in enumerate(ob.data["riffler_cad_faces"]) if name == "datum A")
+    heights = [ob.data.vertices[v].co.z * 1000 for p in ob.data.polygons if faces[p.index] == top for v in p.vertices]
+    assert len(heights) == 6 and np.allclose(heights, 5, atol=1e-3)
+    named = {p.material_index for p in ob.data.polygons if faces[p.index] == top}
+    assert {ob.data.materials[k].name for k in named} == {"CAD #CC331A"}
+    assert len({p.material_index for p in ob.data.polygons}) == 3  # red, blue, none
 
 
 def test_the_tolerance_is_changed_afterwards():
+    """In a scene of millimetres; the assembly's is of metres."""
     with_reader()
     common.scale(1)
     bpy.ops.riffler.import_cad(filepath=part("torus.step"), tolerance=0.5)
     ob = bpy.context.object
+    assert np.allclose(size(ob), (56, 56, 16), atol=1.0)
     ob.location = (5, 0, 0)
     coarse = len(ob.data.polygons)
     assert bpy.ops.riffler.retessellate(tolerance=0.05) == {"FINISHED"}
+    assert np.allclose(size(ob), (56, 56, 16), atol=0.1)
     assert len(ob.data.polygons) > 2 * coarse and tuple(ob.location) == (5, 0, 0)
     assert ob.data["riffler_cad_tolerance"] == 0.05 or abs(ob.data["riffler_cad_tolerance"] - 0.05) < 1e-6
     assert len(ob.data.attributes["riffler_face"].data) == len(ob.data.polygons)
