@@ -66,7 +66,7 @@ OF_SCULPTS = CHANGE | READ | RUN
 OF_OBJECTS = {
     "new_stock": lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=1.0, directions="z"),
     "plan_part": bpy.ops.riffler.plan_part,
-    "make_sculpt": bpy.ops.riffler.make_sculpt,
+    "make_sculpt": lambda: bpy.ops.riffler.make_sculpt(pitch=1.0),
 }
 
 

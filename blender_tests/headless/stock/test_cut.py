@@ -18,7 +18,7 @@ def test_a_straight_slot_has_the_volume_of_the_formula_in_any_scene():
     for unit in (1000.0, 1.0):
         bpy.ops.wm.read_homefile()
         common.scale(unit)
-        ob = common.stock(pitch=0.1)
+        ob = common.stock(pitch=0.2)
         c = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=unit)
         bpy.ops.riffler.cut_curve(curve=c.name, depth=2, tool=common.FLAT)
         removed = 24000 - common.content(ob).volume.volume
@@ -27,7 +27,7 @@ def test_a_straight_slot_has_the_volume_of_the_formula_in_any_scene():
 
 def test_the_curve_is_used_in_its_place():
     common.scale(1)
-    ob = common.stock(pitch=0.25)
+    ob = common.stock(pitch=1.0)
     ob.matrix_world = [[0, -1, 0, 7], [1, 0, 0, -3], [0, 0, 1, 2], [0, 0, 0, 1]]
     c = common.curve("Line", [(0, 0, 0), (10, 0, 0)])
     c.scale = (1000, 1000, 1000)
