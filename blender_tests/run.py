@@ -6,10 +6,10 @@
 
 Each (Blender, installation mode), and each script of a window, is one process with a time limit; a few run at a time.
 Installation modes: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
-source folder. Blender 4.5 tests what depends on the installation mode, from the zip and from the source folder, or
-everything if --blender or --mode names it. Tests whose time is spent in the core (common.core_bound) run in the oldest
-and the newest Blender, and in any that --blender or --mode names. Ends with the costliest tests and the numbers of
-passed, failed and skipped tests, with reasons; exit code 1 if one failed.
+source folder. Blender 4.5 tests what depends on the installation mode, from the zip and from the source folder, except
+tests that do the same in any place (common.anywhere). Tests whose time is spent in the core (common.core_bound) run in
+the oldest and the newest Blender. A Blender that --blender or --mode names runs everything. Ends with the costliest
+tests and the numbers of passed, failed and skipped tests, with reasons; exit code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -44,6 +44,11 @@ FIRST_DISPLAY = int(os.environ.get("FD", "90"))
 OF_INSTALLING = (4, 5)
 # Tests that may depend on the add-on's folder and module name; the rest is the same code in both.
 OF_THE_PLACE = ("lifecycle", "preferences", "recovery", "operators", "tools", "messages")
+# Marks of support/common.py, and where the tests that have them run instead.
+LEFT_OUT = {
+    "core_bound": "tests that run in {} only, because their time goes into the core",
+    "anywhere": "tests that do the same wherever the add-on is installed, which other Blenders run",
+}
 SLOWEST = 20
 END = 8  # lines of a message repeated at the end, where they are read first
 
@@ -75,9 +80,8 @@ class Tally:
         processor = result.get("processor", result["seconds"])
         print(f"  {outcome:8}{processor:7.2f} s in {result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
 
-    def leave(self, where: str, count: int, others: str) -> None:
-        why = "because their time goes into the core"
-        self.left.append(f"{where}: tests that run in {others} only, {why}: {count}")
+    def leave(self, where: str, count: int, mark: str, others: str) -> None:
+        self.left.append(f"{where}: {LEFT_OUT[mark].format(others)}: {count}")
         print(f"  left out          {self.left[-1]}", flush=True)
 
     def skip(self, what: str, reason: str) -> None:
@@ -148,7 +152,7 @@ class Bench:
             elif "note" in message:
                 print(f"  note              {message['note']}", flush=True)
             elif "left" in message:
-                self.tally.leave(where, message["left"], self.ends)
+                self.tally.leave(where, message["left"], message["mark"], self.ends)
             elif "figure" in message:
                 print(f"  figure            {message['figure']}: {message['value']}", flush=True)
                 self.figures.append({"where": where, **message})
@@ -312,13 +316,14 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
     bench.ends = " and ".join(environment.name for environment in ends)
     for environment in usable:
         repeats = environment not in ends and not (arguments.blender or arguments.mode)
-        more = {"leave_out": repeats}
+        of_installing = repeats and environment.version[:2] == OF_INSTALLING
+        more = {"leave_out": ["core_bound", "anywhere"] if of_installing else ["core_bound"] if repeats else []}
         for mode in modes(environment, arguments):
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
                 continue
             chosen = files
-            if repeats and environment.version[:2] == OF_INSTALLING:
+            if of_installing:
                 chosen = [file for file in files if file.stem.removeprefix("test_") in OF_THE_PLACE]
             runs.append(partial(bench.run, environment, mode, chosen, more))
         if arguments.mode in (None, "source"):

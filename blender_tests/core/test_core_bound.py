@@ -38,8 +38,8 @@ def test_no_marked_test_uses_features_that_differ_between_versions():
 
 
 def jobs(monkeypatch, capsys, versions, **more):
-    """(Blender, installation mode, number of files, whether marked tests are left out) of each process, and the runs'
-    output for three tests left out by each."""
+    """(Blender, installation mode, number of files, marks of tests that are left out) of each process, and the runs'
+    output for three tests left out by each mark."""
     found = [environments.Environment(f"bpy {v}", tuple(map(int, v.split("."))), ["bpy"]) for v in versions]
     found.append(environments.Environment("bpy 9.9", (9, 9), [], "not there"))
     monkeypatch.setattr(environments, "find", lambda: found)
@@ -47,9 +47,9 @@ def jobs(monkeypatch, capsys, versions, **more):
 
     def execute(command, variables, timeout):
         job = json.loads(Path(variables["RIFFLER_TEST_JOB"]).read_text())
-        seen.append((bool(job.get("leave_out")), len(job["files"])))
+        seen.append((job["leave_out"], len(job["files"])))
         lines = [{"name": "test", "outcome": "passed", "seconds": 0.1, "message": ""}]
-        lines += [{"left": 3}] if job.get("leave_out") else []
+        lines += [{"left": 3, "mark": mark} for mark in job["leave_out"]]
         return subprocess.CompletedProcess(command, 0, "\n".join(run.MARK + json.dumps(line) for line in lines), "")
 
     monkeypatch.setattr(environments, "execute", execute)
@@ -70,14 +70,16 @@ def test_middle_versions_skip_marked_tests_and_report_where_they_run(monkeypatch
     found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"])
     every, some = ALL, len(run.OF_THE_PLACE)
     assert found == [
-        ("bpy 3.4", "legacy", every, False),
-        ("bpy 4.2", "extension", every, True),
-        ("bpy 4.5", "source", some, True),
-        ("bpy 4.5", "extension", some, True),
-        ("bpy 5.0", "extension", every, False),
+        ("bpy 3.4", "legacy", every, []),
+        ("bpy 4.2", "extension", every, ["core_bound"]),
+        ("bpy 4.5", "source", some, ["core_bound", "anywhere"]),
+        ("bpy 4.5", "extension", some, ["core_bound", "anywhere"]),
+        ("bpy 5.0", "extension", every, []),
     ]
     line = "bpy 4.2, extension: tests that run in bpy 3.4 and bpy 5.0 only, because their time goes into the core: 3"
     assert said.count(line) == 2, "as it ends, and in the summary"
+    line = "bpy 4.5, source: tests that do the same wherever the add-on is installed, which other Blenders run: 3"
+    assert said.count(line) == 2
 
 
 @pytest.mark.parametrize("more", [{"blender": "4.5"}, {"mode": "extension"}])

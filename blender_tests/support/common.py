@@ -36,6 +36,13 @@ def core_bound(test):
     return test
 
 
+def anywhere(test):
+    """Marks a test that does the same wherever the add-on is installed, in a file of which others do not: the Blender
+    that repeats files for the place (run.py) leaves it out."""
+    test.anywhere = True
+    return test
+
+
 def scale(mm_per_unit):
     """Sets the mm of one Blender unit."""
     bpy.context.scene.unit_settings.scale_length = mm_per_unit / 1000

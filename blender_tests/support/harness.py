@@ -1,9 +1,9 @@
 """Runs inside a Blender: installs the add-on as the job says, runs test functions, prints one JSON line per result.
 
 The job is a JSON file named by RIFFLER_TEST_JOB: `mode` (source, extension, legacy, none), `zip`, `files`, `paths`
-(for sys.path), `out`, `repo`, `only`, `leave_out` (the tests that common.core_bound marks). Leaves by os._exit, unless
-the job has `leave`: a bpy wheel in which a test has left classes or handlers registered crashes (4.2) or hangs (4.5)
-when the interpreter ends.
+(for sys.path), `out`, `repo`, `only`, `leave_out` (marks of tests: "core_bound", "anywhere"). Leaves by os._exit,
+unless the job has `leave`: a bpy wheel in which a test has left classes or handlers registered crashes (4.2) or hangs
+(4.5) when the interpreter ends.
 """
 
 import importlib
@@ -100,19 +100,20 @@ def main():
     except Exception:
         say(name="install", outcome="failed", seconds=0, message=traceback.format_exc())
         return 1
-    fine, left = True, 0
+    fine, left = True, {}
     for path in job["files"]:
         module = load(path)
         tests = [(n, f) for n, f in vars(module).items() if n.startswith("test_") and callable(f)]
         for name, function in tests:
             if job["only"] not in f"{module.__name__}.{name}":
                 continue
-            if job.get("leave_out") and getattr(function, "core_bound", False):
-                left += 1
+            mark = next((mark for mark in job.get("leave_out", ()) if hasattr(function, mark)), None)
+            if mark:
+                left[mark] = left.get(mark, 0) + 1
             else:
                 fine &= run_test(f"{module.__name__}.{name}", function)
-    if left:
-        say(left=left)
+    for mark, count in left.items():
+        say(left=count, mark=mark)
     return 0 if fine else 1
 
 

@@ -1,15 +1,16 @@
 """Runs in a Blender of its own that will be killed: a sculpt carved in strokes, reported line by line.
 
 The job's `what`: "stroke", one that never ends; "rest", strokes and then nothing; "end", the add-on is disabled after
-them; "shapes", strokes of hand tools and brushes with falloff by the operator, and one that never ends. `path`: a file
-to save before the first stroke, or ""; `stroke`: mode of the last one. Each line is printed when the carve that it
-reports has returned.
+them; "modes", a sculpt for each of three other modes; "shapes", strokes of hand tools and brushes with falloff by the
+operator. In the middle of the last strokes of these two, the journal is copied to `copies`, as a crash would leave it.
+`path`: a file to save before the first stroke, or "". Each line is printed when the carve that it reports has returned.
 """
 
 import hashlib
 import json
 import math
 import os
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -29,7 +30,8 @@ SIZE = (60, 60, 20)
 ROWS = 5  # rows per carve
 TOP = 14.0  # mm; of the stock of "shapes"
 TOOL = json.dumps(BALL.to_dict())
-PIECES = 6  # carves of the last stroke of "shapes"
+PIECES = 6  # carves of each of the last strokes of "shapes"
+ROWS_OF_MODES = 100
 PIXEL, PIXELS = 0.1, (600, 600)  # mm; of the view from above, in which the operator's strokes are made
 BRUSHES = ("CLAY", "TWIST", "GRAB", "CREASE", "SNAKE_HOOK", "SCRAPE")  # of the strokes of "shapes", after hand tools
 MODES = ("remove", "add", "mask", "remove")  # of the strokes before the last
@@ -73,15 +75,44 @@ def both(rows, mode):
     return volume, mask
 
 
-def last_stroke(run, forever, mode):
+def first_strokes(run):
+    for k, mode in enumerate(MODES):
+        run.begin_stroke()
+        run.carve(BALL, lane(k), mode=mode)
+        run.finish_stroke(bpy.context, mode)
+    while not run.persistence.journal.settled():
+        time.sleep(0.01)
+
+
+def last_stroke(run, forever):
     run.begin_stroke()
     k = 0
     while forever or k < 200:
-        run.carve(BALL, spiral(k + ROWS)[k:], mode=mode, new=k == 0)
+        run.carve(BALL, spiral(k + ROWS)[k:], new=k == 0)
         k += ROWS
         report.say(rows=k)
         time.sleep(0.002)
     run.finish_stroke(bpy.context, "last")
+
+
+def say_copy(run, mode, **more):
+    """Copies the journal at once: all that the last carve has written must be in it."""
+    copy = Path(common.JOB["copies"]) / mode
+    shutil.rmtree(copy, ignore_errors=True)
+    report.say(mode=mode, copy=str(shutil.copytree(run.persistence.journal.folder, copy)), **more)
+
+
+def modes():
+    """A new sculpt for each mode, each in a file of its own, so that all have the same name."""
+    for mode in ("add", "soften", "mask"):
+        run = begun("")
+        first_strokes(run)
+        run.begin_stroke()
+        for k in range(0, ROWS_OF_MODES, ROWS):
+            run.carve(BALL, spiral(k + ROWS)[k:], mode=mode, new=k == 0)
+        say_copy(run, mode, rows=ROWS_OF_MODES)
+        run.finish_stroke(bpy.context, mode)
+        bpy.ops.wm.read_homefile(use_empty=False)
 
 
 def digest(content):
@@ -111,8 +142,9 @@ def piece(mode, k):
     return np.array([[at, 42, TOP, 0, 0, 1] for at in x])
 
 
-def shapes(run, mode):
-    """Hand tools with a mirrored copy and brushes, half of them near a mask, and a stroke that stays unfinished."""
+def shapes(run):
+    """Hand tools with a mirrored copy and brushes, half of them near a mask, then strokes in whose middle the journal
+    is copied."""
     settings = bpy.context.scene.riffler.sculpt
     settings.depth, settings.strength, settings.falloff, settings.axis, settings.string = 0.6, 0.5, "ROOT", "NORMAL", 0
     settings.mirror, settings.radial = {"Y"}, 1
@@ -129,33 +161,37 @@ def shapes(run, mode):
             run.carve(BALL, lane(3) - [0, 0, 18 - TOP, 0, 0, 0], mode="mask")
             run.finish_stroke(bpy.context, "mask")
         shape(brush, (12 + 3 * k, 18), (20 + 3 * k, 22), (30 + 3 * k, 21), tool=TOOL)
-    tool = riffler.Tool.gouge(6, 4, math.radians(30), 40) if mode == "hand" else BALL
-    run.begin_stroke()
-    for k in range(PIECES):
-        run.carve(tool, piece(mode, k), mode=mode, new=k == 0)
-        report.say(rows=k + 1, digest=digest(run))
+    for mode in ("hand", "grab", "twist"):
+        tool = riffler.Tool.gouge(6, 4, math.radians(30), 40) if mode == "hand" else BALL
+        run.begin_stroke()
+        for k in range(PIECES):
+            run.carve(tool, piece(mode, k), mode=mode, new=k == 0)
+        say_copy(run, mode, digest=digest(run))
+        run.finish_stroke(bpy.context, mode)
+
+
+def begun(path):
+    """A live sculpt, in a file of that path."""
+    common.scale(1)
+    name = common.stock(size=SIZE, pitch=0.5, directions="xyz").name
+    if path:
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+    run = common.part("sculpt.live_registry").begin(bpy.context, bpy.data.objects[name])
+    run.persistence._packing.nbytes = 1e9
+    return run
 
 
 def main():
     job = common.JOB
     common.part("sculpt.persistence").folder = lambda: Path(job["journals"])
-    common.scale(1)
-    name = common.stock(size=SIZE, pitch=0.5, directions="xyz").name
-    if job["path"]:
-        bpy.ops.wm.save_as_mainfile(filepath=job["path"])
-    run = common.part("sculpt.live_registry").begin(bpy.context, bpy.data.objects[name])
-    if not job["small"]:
-        run.persistence._packing.nbytes = 1e9
-    if job["what"] == "shapes":
-        shapes(run, job["stroke"])
-        time.sleep(1000)
-    for k, mode in enumerate(MODES):
-        run.begin_stroke()
-        run.carve(BALL, lane(k), mode=mode)
-        run.finish_stroke(bpy.context, mode)
-    while not run.persistence.journal.settled():
-        time.sleep(0.01)
-    last_stroke(run, job["what"] == "stroke", job["stroke"])
+    if job["what"] == "modes":
+        modes()
+    elif job["what"] == "shapes":
+        shapes(begun(job["path"]))
+    else:
+        run = begun(job["path"])
+        first_strokes(run)
+        last_stroke(run, job["what"] == "stroke")
     if job["what"] == "end":
         bpy.ops.preferences.addon_disable(module=common.MODULE)
     report.say(rested=True)

@@ -45,11 +45,11 @@ def command():
 
 
 @contextmanager
-def another_blender(what, path="", small=False, mode="remove"):
+def another_blender(what, path=""):
     """Another Blender that sculpts; the yielded function reads its next message."""
     with tempfile.TemporaryDirectory() as resources:
         (Path(resources) / "scripts" / "addons").mkdir(parents=True)
-        job = {**common.JOB, "what": what, "path": path, "small": small, "stroke": mode}
+        job = {**common.JOB, "what": what, "path": path, "copies": common.out("copies")}
         job["journals"] = str(keeping().folder())
         (Path(resources) / "job.json").write_text(json.dumps(job))
         variables = {
@@ -78,27 +78,37 @@ def another_blender(what, path="", small=False, mode="remove"):
             child.stdout.close()
 
 
-_cut_off = []  # the journal that a killed Blender has left, and the rows that it reported
+_cut_off = {}  # path of a file or "" → the journal that a killed Blender has left, and the rows that it reported
 
 
-def cut_off():
+def cut_off(path=""):
     """Like `killed`, with a copy of the first one's journal: a Blender's start takes longer than most tests."""
-    root = keeping().folder()
-    if not _cut_off:
-        said = killed()
-        (folder,) = [path for path in root.iterdir() if path in {f.folder for f in keeping().crashed(look=True)}]
-        copy = Path(common.out("cut_off"))
-        shutil.rmtree(copy, ignore_errors=True)
-        _cut_off.append((shutil.copytree(folder, copy), said))
+    if path not in _cut_off:
+        said = killed(path)
+        _cut_off[path] = kept_journal(f"cut_off-{len(_cut_off)}"), said
         return said
-    (kept, said) = _cut_off[0]
-    shutil.copytree(kept, root / f"cut-off-{len(list(root.iterdir()))}")
+    kept, said = _cut_off[path]
+    leave_behind(kept)
     return said
 
 
-def killed(path="", small=False, rows=300, mode="remove"):
+def kept_journal(name):
+    """A copy of the only journal that was left behind."""
+    (folder,) = {found.folder for found in keeping().crashed(look=True)}
+    copy = Path(common.out(name))
+    shutil.rmtree(copy, ignore_errors=True)
+    return shutil.copytree(folder, copy)
+
+
+def leave_behind(journal):
+    """Puts a copy of a journal where a killed Blender leaves it."""
+    root = keeping().folder()
+    shutil.copytree(journal, root / f"cut-off-{len(list(root.iterdir()))}")
+
+
+def killed(path, rows=300):
     """A Blender killed in the middle of a stroke; the rows of it that it reported as carved."""
-    with another_blender("stroke", path, small, mode) as (child, messages):
+    with another_blender("stroke", path) as (child, messages):
         said = 0
         for message in messages:
             said = message.get("rows", 0)
@@ -175,10 +185,11 @@ def test_a_recovery_that_fails_leaves_the_journal_to_others():
         bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_late.blend"))
 
 
+@common.anywhere
 def test_killed_in_mid_stroke_and_recovered_into_the_sculpt_of_the_file():
     path = common.out("cut_off.blend")
     with fresh():
-        said = killed(path)
+        said = cut_off(path)
         bpy.ops.wm.open_mainfile(filepath=path)
         assert len(keeping().crashed()) == 1
         objects = len(bpy.data.objects)
@@ -193,65 +204,86 @@ def test_killed_in_mid_stroke_and_recovered_into_the_sculpt_of_the_file():
 
 
 @common.core_bound
-def test_killed_in_mid_stroke_of_the_other_modes_and_recovered():
+def test_cut_off_in_mid_stroke_of_the_other_modes_and_recovered():
+    """One Blender copies its journal in the middle of each stroke, as a crash would leave it."""
+    with fresh():
+        said = copied("modes")
     for mode in ("add", "soften", "mask"):
         with fresh():
-            said = killed(rows=100, mode=mode)
+            leave_behind(said[mode]["copy"])
             bpy.ops.wm.read_homefile(use_empty=False)
             common.scale(1)
             keeping().crashed(look=True)
             assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
             made = common.content(bpy.data.objects["Stock"])
-            there = [tuple(v.to_bytes() for v in recovering.both(r, mode)) for r in (said, said + recovering.ROWS)]
-            assert (made.volume.to_bytes(), made.mask.to_bytes()) in there, f"{mode}: not what {said} rows make"
+            volume, mask = recovering.both(said[mode]["rows"], mode)
+            assert made.volume.to_bytes() == volume.to_bytes() and made.mask.to_bytes() == mask.to_bytes(), mode
             if mode == "add":  # into the block, where there is no room: only the rows show it
-                assert len(made.cuts[-1].poses) - 1 in (said, said + recovering.ROWS)
+                assert len(made.cuts[-1].poses) - 1 == said[mode]["rows"]
             bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_mode.blend"))
 
 
-def shapes_killed(mode, path=""):
-    """A Blender killed within a stroke of a hand tool or a brush with falloff, after others of both. Returns the
-    digest of what it had."""
-    with another_blender("shapes", path, mode=mode) as (child, messages):
-        said = next(message for message in messages if message.get("rows") == recovering.PIECES)
-        child.send_signal(signal.SIGKILL)
-        child.wait(30)
-    return said["digest"]
+def copied(what, path=""):
+    """Another Blender's reports on the journals that it has copied, by the mode of the stroke it was in."""
+    said = {}
+    with another_blender(what, path) as (_, messages):
+        for message in messages:
+            if "rested" in message:
+                break
+            said[message["mode"]] = message
+    return said
 
 
-def test_killed_within_a_stroke_of_a_hand_tool_or_a_brush_and_recovered_to_the_byte():
+_shapes = []
+
+
+def shapes():
+    """What `copied` returns of strokes of hand tools and of brushes with falloff, and the file that they began in."""
+    if not _shapes:
+        path = common.out("shapes.blend")
+        with fresh():
+            _shapes.append((copied("shapes", path), path))
+    return _shapes[0]
+
+
+@common.anywhere
+def test_cut_off_within_a_stroke_of_a_hand_tool_or_a_brush_and_recovered_to_the_byte():
+    copies, _ = shapes()
     for mode in ("hand", "grab"):
         with fresh():
-            had = shapes_killed(mode)
+            said = copies[mode]
+            leave_behind(said["copy"])
             bpy.ops.wm.read_homefile(use_empty=False)
             common.scale(1)
             keeping().crashed(look=True)
             assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
             made = common.content(bpy.data.objects["Stock"])
-            assert recovering.digest(made) == had, mode
+            assert recovering.digest(made) == said["digest"], mode
             assert made.shaped and len(made.cuts) == 1, "only the first cut is one that a machine can make"
             matches_its_volume("Stock")
             bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_shapes.blend"))
             bpy.ops.wm.open_mainfile(filepath=common.out("recovered_shapes.blend"))
-            assert recovering.digest(common.content(bpy.data.objects["Stock"])) == had, mode
+            assert recovering.digest(common.content(bpy.data.objects["Stock"])) == said["digest"], mode
 
 
+@common.anywhere
 def test_strokes_of_brushes_and_hand_tools_continue_from_the_file_without_the_journal_s_stock():
-    path = common.out("no_stock_shapes.blend")
+    said, path = shapes()
     with fresh():
-        had = shapes_killed("twist", path)
+        leave_behind(said["twist"]["copy"])
         (keeping().crashed(look=True)[0].folder / "stock.rvol").unlink()
         bpy.ops.wm.open_mainfile(filepath=path)
         assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
-        assert recovering.digest(common.content(bpy.data.objects["Stock"])) == had
+        assert recovering.digest(common.content(bpy.data.objects["Stock"])) == said["twist"]["digest"]
 
 
+@common.anywhere
 def test_a_journal_without_its_stock_continues_from_the_file():
-    path = common.out("no_stock.blend")
+    path = common.out("cut_off.blend")
     with fresh():
-        said = killed(path)
+        said = cut_off(path)
         (keeping().crashed(look=True)[0].folder / "stock.rvol").unlink()
-        text = common.refused(lambda: bpy.ops.riffler.recover(), "no stock", "no_stock.blend")
+        text = common.refused(lambda: bpy.ops.riffler.recover(), "no stock", "cut_off.blend")
         assert "Stock" in text and len(keeping().crashed(look=True)) == 1
         bpy.ops.wm.open_mainfile(filepath=path)
         bpy.ops.riffler.recover()
