@@ -16,12 +16,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 import riffler
+from cad_reader import shared_import
 from riffler import cad, cli
 from riffler.cad import process
 
 needs_occ = pytest.mark.skipif(find_spec("OCP") is None, reason="the package cadquery-ocp-novtk is not installed")
 HEADER = b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
 END = b"ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_import():
+    """Readers are forked from one process that has imported OpenCASCADE. Only
+    test_opencascade_stays_out_of_the_callers_process has the process that users have."""
+    if find_spec("OCP") is None:
+        yield
+        return
+    with shared_import(process):
+        yield
 
 
 @pytest.fixture(scope="session")
