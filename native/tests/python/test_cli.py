@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import riffler
-from commands import ENVIRONMENT, RIFFLER, result, riffle
+from commands import ENVIRONMENT, RIFFLER, in_shell, result, riffle
 from riffler.command import console, tools
 
 SLOT = "G21 G90 G94\nG0 X-10 Y10 Z5\nG1 Z4 F500\nX50\nG0 Z20\nM30\n"
@@ -58,7 +58,7 @@ CARVE = ("volume", "carve", "--stock", "40x20x10", "--pitch", "0.5", "--program"
 
 
 def test_carve_writes_a_closed_mesh_of_the_remaining_material(folder):
-    data = result(*CARVE, "--tool", "flat:6", "--out", "part.stl", cwd=folder)
+    data = result(*CARVE, "--tool", "flat:6", "--out", "part.stl", cwd=folder, run=in_shell)
     # A flat cutter, 6 wide, 6 deep, through the whole length of 40.
     assert data["removed"] == pytest.approx(6 * 6 * 40, abs=1e-6)
     assert data["volume_before"] == pytest.approx(40 * 20 * 10)
@@ -241,9 +241,9 @@ def test_doctor_describes_the_machine(folder):
     granted = data["real_time"]
     assert granted["text"].startswith("real time" if granted["level"] else "normal")
     assert granted["level"] or "limits.d" in granted["remedy"]
-    off = json.loads(riffle("doctor", "--json", cwd=folder, RIFFLER_REAL_TIME="0").stdout)["real_time"]
+    off = json.loads(in_shell("doctor", "--json", cwd=folder, RIFFLER_REAL_TIME="0").stdout)["real_time"]
     assert off == {"level": 0, "by": None, "text": "normal: RIFFLER_REAL_TIME is 0", "remedy": ""}
-    done = riffle("doctor", cwd=folder, RIFFLER_THREADS="3")
+    done = in_shell("doctor", cwd=folder, RIFFLER_THREADS="3")
     assert done.returncode == 0 and done.stderr == ""
     assert any(line.split() == ["threads", "3"] for line in done.stdout.splitlines())
 

@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 import riffler
-from commands import result, riffle
+from commands import in_shell, result, riffle
 from riffler import _core, cluster
 from verify_reference import state
 
@@ -292,7 +292,7 @@ def test_the_command_gives_the_same_report_with_a_scheduler(tmp_path, workers):
     words = ["nc", "verify", "p.ngc", *block, "--out", "left.rvol"]
     left, said = [], []
     for more in ([], ["--scheduler", workers.scheduler.address]):
-        said.append(result(*words, *more, cwd=tmp_path, status=1))
+        said.append(result(*words, *more, cwd=tmp_path, status=1, run=in_shell))
         left.append((tmp_path / "left.rvol").read_bytes())
         assert [f["kind"] for f in said[-1]["findings"]] == ["rapid"]
         said[-1] = {k: v for k, v in said[-1].items() if k not in ("seconds", "stats")}

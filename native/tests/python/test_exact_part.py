@@ -9,8 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import riffler
+from cad_reader import shared_import
+from commands import riffle
 
 needs_occ = pytest.mark.skipif(find_spec("OCP") is None, reason="the package cadquery-ocp-novtk is not installed")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_import():
+    """Readers are forked from one process that has imported OpenCASCADE. What a reader does to its caller is tested in
+    test_cad.py."""
+    if find_spec("OCP") is None:
+        yield
+        return
+    with shared_import(riffler.cad.process):
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -84,33 +97,30 @@ def test_plans_of_a_file_are_on_its_exact_faces(files, tmp_path):
     op = riffler.plan.finish(setup, riffler.Tool.ball(4, 30), cusp=0.05, tolerance=0.003, region=region, lead=0)
     off = np.linalg.norm(op.poses[op.kind == 2, :3] + [0, 0, 2], axis=1) - 9
     assert abs(off).max() < 1e-5 and op.report.exact.before > 0.003
-    command = [sys.executable, "-m", "riffler", "plan", "finish"]
+    command = ["plan", "finish"]
     more = ["--tool", "ball:4", "--cusp", "0.3", "--slopes", "0,30", "--exact", "--out", str(tmp_path / "a.ngc")]
-    done = subprocess.run([*command, str(files / "sphere.step"), *more], capture_output=True, text=True)
+    done = riffle(*command, files / "sphere.step", *more, cwd=tmp_path)
     assert done.returncode == 0 and "on exact faces" in done.stdout + done.stderr, done.stderr
     part.mesh.write(tmp_path / "a.stl")
-    done = subprocess.run([*command, str(tmp_path / "a.stl"), *more], capture_output=True, text=True)
+    done = riffle(*command, tmp_path / "a.stl", *more, cwd=tmp_path)
     assert done.returncode != 0 and "--exact: a.stl has triangles only" in done.stderr
 
 
 @needs_occ
 def test_pencil_paths_of_the_command_line_touch_the_exact_faces(files, tmp_path):
     """Around a boss of radius 8 mm on the plane z = 0: the centre of a ball of radius 2 is at radius 10 and z = 2."""
-    command = [sys.executable, "-m", "riffler", "plan", "pencil", str(files / "boss.step"), "--tool", "ball:4"]
+    command = ["plan", "pencil", files / "boss.step", "--tool", "ball:4"]
     off = {}
     for name, more in (("plain", []), ("exact", ["--exact"])):
         out = tmp_path / f"{name}.json"
-        done = subprocess.run([*command, *more, "--out", str(out)], capture_output=True, text=True)
+        done = riffle(*command, *more, "--out", out, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         (path,) = riffler.plan.load(out).paths
         off[name] = max(abs(np.hypot(*path.centres[:, :2].T) - 10).max(), abs(path.centres[:, 2] - 2).max())
         assert ("on exact faces" in done.stdout + done.stderr) == bool(more)
     assert off["plain"] > 1e-4 and off["exact"] < 1e-6, off
     (tmp_path / "a.stl").write_bytes(b"solid a\nendsolid a\n")
-    done = subprocess.run(
-        [*command[:5], str(tmp_path / "a.stl"), *command[6:], "--exact", "--out", str(tmp_path / "b.json")],
-        capture_output=True, text=True,
-    )  # fmt: skip
+    done = riffle(*command[:2], tmp_path / "a.stl", *command[3:], "--exact", "--out", tmp_path / "b.json", cwd=tmp_path)
     assert done.returncode != 0 and "--exact: a.stl has triangles only" in done.stderr
 
 

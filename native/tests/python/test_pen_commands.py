@@ -14,7 +14,7 @@ import tomllib
 import numpy as np
 import pytest
 import riffler
-from commands import ENVIRONMENT, RIFFLER, result, riffle
+from commands import ENVIRONMENT, RIFFLER, in_shell, result, riffle
 from riffler.command.live import SCALE, Braille, History, chart
 from riffler.command.pen_calibrate import side_view, toml, tour
 from riffler.command.pen_carving import TOOL, block_at, hand_at, table_at
@@ -396,7 +396,7 @@ def test_a_run_becomes_a_figure(tmp_path):
 
 def test_simulate_names_wrong_arguments(tmp_path):
     def refused(*words: str, **env: str) -> str:
-        done = riffle("pen", "simulate", *words, cwd=tmp_path, **env)
+        done = (in_shell if env else riffle)("pen", "simulate", *words, cwd=tmp_path, **env)
         assert done.returncode == 2 and done.stdout == ""
         return done.stderr
 

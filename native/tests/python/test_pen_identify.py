@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 import riffler
-from commands import result, riffle
+from commands import in_shell, result, riffle
 from riffler.command import pen_fit, pen_identify, pen_sweeps
 from riffler.command.pen_fit import (
     JOINTS,
@@ -336,7 +336,7 @@ def test_the_file_has_the_values_and_their_uncertainties(geometry, tmp_path):
 
 def test_the_command_writes_a_pen(tmp_path):
     out = tmp_path / "mine.toml"
-    data = result("pen", "identify", "simulated", "--yes", "--seed", "4", "--out", out, cwd=tmp_path)
+    data = result("pen", "identify", "simulated", "--yes", "--seed", "4", "--out", out, cwd=tmp_path, run=in_shell)
     assert data["of"] == 22 and data["inside"] >= 18
     pen = riffler.pen.PenGeometry.load(str(out))
     written = [c.torque_constant for c in pen.channels]

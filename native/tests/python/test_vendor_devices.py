@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import riffler
-from commands import riffle
+from commands import in_shell
 from inverse_service import arm, grip, inverse_service
 
 
@@ -24,7 +24,7 @@ def haply(tmp_path):
     """Runs a command of riffler with the service's port."""
 
     def run(service, *words: str):
-        return riffle(*words, cwd=tmp_path, RIFFLER_HAPLY_PORT=str(service.server_address[1]))
+        return in_shell(*words, cwd=tmp_path, RIFFLER_HAPLY_PORT=str(service.server_address[1]))
 
     return run
 
@@ -126,12 +126,12 @@ def stubs(tmp_path_factory):
 )
 def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, variable, stub, name, pose):
     chosen = {variable: str(stubs / stub)}
-    data = json.loads(riffle("pen", "list", "--json", cwd=tmp_path, **chosen).stdout)
+    data = json.loads(in_shell("pen", "list", "--json", cwd=tmp_path, **chosen).stdout)
     (found,) = (device for device in data["devices"] if device["kind"] == kind)
     assert found["path"].startswith(kind) and found["name"] == name and found["problem"] is None
     assert "pushes x y z" in found["capability"] and kind not in data["unavailable"]
-    assert name in riffle("doctor", cwd=tmp_path, **chosen).stdout
-    done = riffle("pen", "monitor", found["path"], "--seconds", "0.5", "--json", cwd=tmp_path, **chosen)
+    assert name in in_shell("doctor", cwd=tmp_path, **chosen).stdout
+    done = in_shell("pen", "monitor", found["path"], "--seconds", "0.5", "--json", cwd=tmp_path, **chosen)
     assert done.returncode == 0, done.stderr
     monitored = json.loads(done.stdout)
     assert monitored["pose"] == pytest.approx(pose) and monitored["link"]["reports"] > 20
@@ -147,8 +147,8 @@ def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, v
 )
 def test_the_error_of_a_missing_library_names_the_one_to_install(tmp_path, kind, variable, remedy):
     missing = {variable: str(tmp_path / "missing.so")}
-    unavailable = json.loads(riffle("pen", "list", "--json", cwd=tmp_path, **missing).stdout)["unavailable"]
+    unavailable = json.loads(in_shell("pen", "list", "--json", cwd=tmp_path, **missing).stdout)["unavailable"]
     assert "not installed" in unavailable[kind] and "no such file" in unavailable[kind] and remedy in unavailable[kind]
-    assert remedy in flat(riffle("pen", "list", cwd=tmp_path, **missing).stdout)
-    opened = riffle("pen", "monitor", kind, "--seconds", "1", cwd=tmp_path, **missing)
+    assert remedy in flat(in_shell("pen", "list", cwd=tmp_path, **missing).stdout)
+    opened = in_shell("pen", "monitor", kind, "--seconds", "1", cwd=tmp_path, **missing)
     assert opened.returncode != 0 and variable in opened.stderr
