@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "riffler/base/parallel.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::base::background_test {
 namespace {
@@ -110,7 +111,8 @@ TEST(Background, AThousandTasksMayBeDroppedOrCancelledAtAnyTime) {
     std::atomic<int>& ended;
     ~Count() { ++ended; }
   };
-  for (int i = 0; i < 1000; ++i) {
+  constexpr int kTasks = test::cases(1000);
+  for (int i = 0; i < kTasks; ++i) {
     Background work([&ended, i](const Progress& progress) {
       const Count count{ended};
       std::vector<double> sums(64);
@@ -127,7 +129,7 @@ TEST(Background, AThousandTasksMayBeDroppedOrCancelledAtAnyTime) {
     if (i % 3 == 0) work.cancel();
     if (i % 2 == 0) std::thread([&work] { work.cancel(), work.wait(); }).join();
   }
-  EXPECT_EQ(ended, 1000);
+  EXPECT_EQ(ended, kTasks);
 }
 
 }  // namespace

@@ -129,6 +129,7 @@ TEST(Fixture, PushesAgainstTheToolsNormalsWithForceAndTorqueOfItsVolume) {
                                 {Assembly(cutters::flat(8, 4000)), normal_of_flat}};
   std::map<int, Contact> dense;  // by number: the poses are the same for every pitch
   for (const double pitch : {0.5, 0.2}) {
+    if (test::kSanitized && pitch < 0.5) continue;
     const Collider collider = beside(kBlock, pitch, 0.3, "z", Push::Normal);
     Random random(5);
     double worst = 0, worst_torque = 0;
@@ -187,6 +188,7 @@ TEST(Fixture, ForceAndItsDerivativeHaveNoStepsAsASideMovesOverDexels) {
   const Assembly assembly(cutters::flat(6, 20).with_holder({{20, 15, 40, 15}}));
   const double step = 2e-3;
   for (const double pitch : {0.5, 0.2}) {
+    if (test::kSanitized && pitch < 0.5) continue;
     const Collider collider = beside(kBlock, pitch, 0.3);
     const auto force = [&](double x) { return collider.query(assembly, {{x, 10, -25}, {0, 0, 1}}).force.x; };
     // A cylinder's side in a wall: the volume's derivative is as wide as the chord, times the height.

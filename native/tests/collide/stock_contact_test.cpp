@@ -11,6 +11,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::collide::stock_contact_test {
 namespace {
@@ -78,10 +79,11 @@ void expect_as_dense(const Volume& stock, const Tool& tool, const Pose& pose, co
 
 TEST(StockContact, OnAFaceAndAnEdgeItIsTheDenseSumForAnyCutterAndGrid) {
   const Tool cutters[] = {cutters::ball(6, 20), cutters::flat(4, 20), cutters::fillet(6, 1, 20)};
-  for (const char* directions : {"z", "x", "xyz"}) {
+  for (const std::string directions : {"z", "x", "xyz"}) {
+    if (test::kSanitized && directions == "z") continue;
     const Volume stock = Volume::block({kBox, 0.2, directions});
     for (const Tool& tool : cutters) {
-      SCOPED_TRACE(std::string(directions) + ' ' + tool.kind());
+      SCOPED_TRACE(directions + ' ' + tool.kind());
       expect_as_dense(stock, tool, leaning(12.03, 10.07, 9.7, 0, 0), in_block, {{8, 6, 9}, {16, 14, 10}}, 0.05);
       expect_as_dense(stock, tool, leaning(12.03, 10.07, 9.5, 0.4, 1), in_block, {{8, 6, 8}, {16, 14, 10}}, 0.05);
       // The upper edge at x = 24, and the wall.
@@ -122,7 +124,7 @@ TEST(StockContact, ItIsContinuousAndEvenAlongASlide) {
     const Volume stock = Volume::block({kBox, 0.2, c.directions});
     const StockContact touch(cutters::ball(6, 20));
     double least = 1e9, largest = 0, jump = 0, before = 0;
-    for (int k = 0; k <= 600; ++k) {
+    for (int k = 0; k <= test::cases(600); ++k) {
       // 0.2 mm deep on the face, across the rays at an odd angle.
       const Vec3 axis = leaning(0, 0, 0, c.tilt, 0.7).axis, centre(8 + 0.01 * k, 8 + 0.0037 * k, 12.8);
       const double force = glm::length(look(touch, stock, {centre - 3.0 * axis, axis}).contact.force);
@@ -153,7 +155,7 @@ TEST(StockContact, AClosedPathGivesAlmostNoWork) {
   for (const char* directions : {"z", "xyz"}) {
     const Volume stock = Volume::block({kBox, 0.2, directions});
     const StockContact touch(cutters::fillet(6, 1, 20));
-    for (int round = 0; round < 6; ++round) {
+    for (int round = 0; round < test::cases(6); ++round) {
       const Vec3 middle(23.5 + random.uniform(0, 2), 10, 9.6), a(0.3, 0.2, 0.1), b(-0.1, 0.2, 0.25);
       double work = 0, size = 0;
       Vec3 at = middle + a, force(0);

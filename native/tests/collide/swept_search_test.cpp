@@ -9,6 +9,7 @@
 #include "reference/surface_entry.hpp"
 #include "riffler/collide/collider.hpp"
 #include "stress/random.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::collide::swept_search_test {
 namespace {
@@ -140,7 +141,7 @@ TEST(SweptSearch, DividesNeedlesThatExtendPastAHollowOfTheTool) {
   const Collider collider(mesh);
   const Vec3 base(0, -40, -20), along = glm::normalize(Vec3(0, 40, 80)), out = glm::normalize(Vec3(0, -80, 40));
   Random random(900);
-  for (int n = 0; n < 8; ++n) {
+  for (int n = 0; n < test::cases(8); ++n) {
     const auto pose = [&](double up) {
       const double lean = std::atan2(10, 39) + random.uniform(-1e-3, 1e-3);
       const Vec3 axis = std::cos(lean) * along + std::sin(lean) * out;

@@ -182,7 +182,7 @@ TEST(TriangleSearch, DepthsInHollowsAreMinimalThoughTheToolExtendsBehindTheirEnd
   const tool::Outline outline(tool);
   const OutlineRuns runs(outline.edges());
   Random random(400);
-  for (int n = 0; n < 300; ++n) {
+  for (int n = 0; n < test::cases(300); ++n) {
     const Corners t = triangle_through(outline, random);
     TriangleSearch search(runs);
     search_all(search, t);
@@ -284,7 +284,7 @@ TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheMinimum) {
     SCOPED_TRACE(tool.name());
     const tool::Outline outline(tool);
     Random random(++seed);
-    for (int n = 0; n < test::cases(300); ++n) {
+    for (int n = 0; n < test::cases(300, 12); ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       const Group group(outline, frame, [&] { return triangle_near(outline, random); });
       for (int k = 0; k < base::kLanes; ++k) {

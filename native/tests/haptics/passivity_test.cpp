@@ -113,7 +113,7 @@ TEST(Passivity, QuantisationHidesNoMoreThanItsStepTimesTheChangeOfForce) {
     settings.resolution = {step, 0};
     for (const double times : {1.0, 10.0}) {
       const stress::SessionResult r =
-          press(device, {{1.0}, 4 * times, 0, true, 10}, {test::cases(100'000), 2, 5}, settings);
+          press(device, {{1.0}, 4 * times, 0, true, 10}, {test::cases(100'000, 20), 2, 5}, settings);
       EXPECT_EQ(r.unforeseen, 0);
       EXPECT_LE(r.measured_delivered, settings.reserve + 1e-9);
       EXPECT_LE(r.delivered, settings.reserve + r.variation + 1e-9);

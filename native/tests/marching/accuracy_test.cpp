@@ -40,7 +40,7 @@ TEST(ToMeshAccuracy, OfASphereIsWithinTheBound) {
 
 TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandomIsWithinTheBound) {
   Errors edges, corners, vertices;
-  for (int seed = 0; seed < test::cases(30); ++seed) {
+  for (int seed = 0; seed < test::cases(30, 15); ++seed) {
     Random random(static_cast<unsigned>(seed));
     const Vec3 centre = Vec3(10.0) + 0.3 * random.direction(), half{4.3, 3.7, 5.1};
     const Mat3 turn = random_turn(random);

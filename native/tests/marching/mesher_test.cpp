@@ -54,7 +54,7 @@ TEST(Mesher, FollowsABarFullOfEdges) {
       sweep::carve(volume, tools[random.below(3)],
                    std::array{Pose{at, axis}, Pose{at + 0.4 * random.direction(), axis}});
     };
-    for (int n = 0; n < 600; ++n) nick(random.uniform(0, 60));
+    for (int n = 0; n < test::cases(600, 3); ++n) nick(random.uniform(0, 60));
     Mesher mesher(volume);
     EXPECT_TRUE(float_audit(mesher.mesh()).clean()) << float_audit(mesher.mesh());
     for (int step = 0; step < test::cases(16); ++step) {

@@ -129,7 +129,9 @@ void lead(const Wall& wall, const collide::Collider& obstacles, bool quick) {
 }
 
 TEST(LedAlongWalls, TheToolArrivesAndTheForceIsContinuous) {
-  for (const Wall& wall : kWalls) lead(wall, collide::Collider(bench::contact_mesh(wall.part)), test::kSanitized);
+  for (const Wall& wall : kWalls)
+    if (!test::kSanitized || wall.part == "bore" || wall.part == "needles")
+      lead(wall, collide::Collider(bench::contact_mesh(wall.part)), test::kSanitized);
 }
 
 TEST(LedAlongWalls, AlongModelsToo) {

@@ -167,6 +167,7 @@ TEST(OrientLoop, EveryFaultRemovesTheForceAndLeavesTheTool) {
       {"motor driver", [](OrientBench& b) { b.pen->on_sense = [](riffler_pen_sensors& s) { s.driver_faults = 4; }; }},
   };
   for (const auto& [name, begin] : faults) {
+    if (test::kSanitized && &begin != &faults.front().second && &begin != &faults.back().second) continue;
     OrientBench bench(turning_hand(0.9, {}, 0));
     OrientTick last;
     bench.run(4, [&](const OrientTick& tick) { last = tick; });

@@ -78,7 +78,9 @@ std::unique_ptr<JournalSink> sink_to(const std::filesystem::path& path, const Vo
 
 TEST(SculptFault, EachRemovesTheForceAndLeavesAJournalThatReplaysTheCuts) {
   const double after = test::kSanitized ? 3 : 6;  // s
+  int number = 0;
   for (const Fault& fault : faults()) {
+    if (test::kSanitized && number++ % 4 != 0) continue;  // SimulatedFault has all of them
     SCOPED_TRACE(fault.name);
     const Volume stock = test::sculpt_stock(0.5);
     const test::TemporaryFile file("fault.rjournal");

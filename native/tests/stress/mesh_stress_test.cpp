@@ -16,15 +16,15 @@ namespace riffler::stress::mesh_stress_test {
 namespace {
 
 TEST(MeshStress, HoldsForVolumesFromTheDegenerateLimits) {
-  const MeshResults results = run_meshes({}, test::cases(2000));
+  const MeshResults results = run_meshes({}, test::cases(2000, 10));
   for (const MeshFailure& f : results.failures)
     ADD_FAILURE() << "volume " << f.number << " (" << name(f.scene) << "): " << f.problem
                   << "\nagain: " << reproducer(f);
-  EXPECT_GT(results.thread_checks, test::cases(100));
+  EXPECT_GT(results.thread_checks, test::cases(100, 10));
   for (std::size_t k = 0; k < results.scenes.size(); ++k) {
     const MeshTally& t = results.scenes[k];
-    EXPECT_EQ(t.volumes, test::cases(200));
-    EXPECT_GT(t.triangles, test::cases(3000)) << name(static_cast<MeshScene>(k)) << ": hardly anything was meshed";
+    EXPECT_EQ(t.volumes, test::cases(200, 10));
+    EXPECT_GT(t.triangles, test::cases(3000, 10)) << name(static_cast<MeshScene>(k)) << ": hardly anything was meshed";
   }
 }
 

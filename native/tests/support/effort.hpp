@@ -10,9 +10,9 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// How many of `all` cases to run: all, or a quarter under a sanitizer.
-constexpr int cases(int all) {
-  return kSanitized ? (all + 3) / 4 : all;
+/// How many of `all` cases to run: all, or one of `share` under a sanitizer.
+constexpr int cases(int all, int share = 4) {
+  return kSanitized ? (all + share - 1) / share : all;
 }
 
 }  // namespace riffler::test

@@ -58,7 +58,7 @@ Volume carved(Volume volume, const std::vector<HistoryStroke>& strokes) {
 TEST(History, RandomEditsGiveTheBytesOfAReplayForAnyNumberOfThreads) {
   stress::HistoryOptions options;
   options.seed = 20;
-  const int edits = test::kSanitized ? 53 : 80;
+  const int edits = test::cases(80, 3);
   const stress::HistoryResults results = stress::run_histories(options, edits);
   for (const stress::HistoryFailure& f : results.failures)
     ADD_FAILURE() << "edit " << f.edit << ": " << f.text << "\nagain: " << reproducer(f);

@@ -72,7 +72,7 @@ TEST(Kernels, GiveTheSameBitsOnEveryInstructionSet) {
     for (const char* directions : {"z", "xyz"})
       for (const std::vector<Pose>& whole : paths) {
         if (test::kSanitized && (directions == std::string("z") || &whole == paths)) continue;
-        const std::vector<Pose> path(whole.begin(), whole.begin() + test::cases(static_cast<int>(whole.size())));
+        const std::vector<Pose> path(whole.begin(), whole.begin() + test::cases(static_cast<int>(whole.size()), 10));
         SCOPED_TRACE(tool.kind());
         use_instruction_set(sets.front());
         const Result best = carved(tool, directions, path);

@@ -12,6 +12,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "riffler/verify/verification.hpp"
 #include "support/box_mesh.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 #include "support/tilted.hpp"
 #include "verify/remote.hpp"
@@ -142,7 +143,7 @@ void drop_machine(VerifyReport& report) {
 }
 
 TEST(SlabRun, HasOneReportForAnySplitOfTheProgram) {
-  const nc::Program program = mixed(150, 4);
+  const nc::Program program = mixed(test::cases(150, 3), 4);
   VerifyReport whole = fed({program});
   drop_machine(whole);
   for (const std::size_t rows : {1U, 7U, 60U}) {
@@ -173,15 +174,16 @@ TEST(SlabRun, PacketsAreTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(Verification, AfterEditsReportsWhatAFreshRunReports) {
-  const nc::Program first = mixed(150, 6);
+  constexpr std::size_t kRows = test::cases(150, 3);
+  const nc::Program first = mixed(kRows, 6);
   Verification verification(arguments());
   verification.run(first);
-  std::vector<nc::Program> edits{trimmed(first, 0, 100), first, nc::Program(), mixed(90, 7)};
+  std::vector<nc::Program> edits{trimmed(first, 0, kRows * 2 / 3), first, nc::Program(), mixed(kRows * 3 / 5, 7)};
   nc::Program moved;
   moved.tools = first.tools, moved.notes = first.notes;
   for (std::size_t row = 0; row < first.size(); ++row) {
     nc::Move move = first[row];
-    if (row == 77) move.pose.tip.z += 1;
+    if (row == kRows / 2) move.pose.tip.z += 1;
     moved.append(move);
   }
   edits.insert(edits.begin(), moved);
