@@ -161,11 +161,13 @@ TEST(Pencil, AroundABossThePathIsOneLoop) {
 TEST(Pencil, BlendsSmallerThanTheBallGiveAPathAndLargerOnesNone) {
   const double radius = 3, z = -8 + radius * std::sqrt(2.0);
   for (const double blend : {0.5, 1.0, 2.5, 2.9}) {
+    if (test::kSanitized && blend != 2.5) continue;
     const PencilResult result = pencil(groove(kPi / 2, 40, blend, 64), radius);
     ASSERT_EQ(result.paths.size(), 1U) << blend;
     EXPECT_LT(hausdorff(result.paths[0], {0, 0, z}, {40, 0, z}), 1e-4);
   }
   for (const double blend : {3.05, 3.5, 5.0}) {
+    if (test::kSanitized && blend != 3.5) continue;
     const PencilResult result = pencil(groove(kPi / 2, 40, blend, 64), radius);
     EXPECT_TRUE(result.paths.empty()) << blend;
     EXPECT_LT(result.rest_area, 0.01) << blend;

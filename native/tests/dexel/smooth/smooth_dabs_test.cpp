@@ -15,6 +15,7 @@
 #include "riffler/dexel/boolean.hpp"
 #include "riffler/marching/to_mesh.hpp"
 #include "riffler/mesh/audit.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::dexel::smooth_dabs_test {
@@ -297,10 +298,10 @@ TEST(Soften, KeepsProtectedMaterialToTheBit) {
 TEST(Soften, LeavesRandomVolumesValid) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> place(-2, 26), size(0.2, 5), share(0, 1);
-  for (unsigned seed = 0; seed < 12; ++seed) {
+  for (int seed = 0; seed < test::cases(12, 3); ++seed) {
     const double pitch = seed % 3 == 0 ? 0.55 : seed % 3 == 1 ? 0.7 : 1;
     const Frame frame = test::lattice_frame("xyz", pitch);
-    Volume volume = seed % 4 == 3 ? test::wavy_volume(frame) : test::random_volume(frame, seed);
+    Volume volume = seed % 4 == 3 ? test::wavy_volume(frame) : test::random_volume(frame, static_cast<unsigned>(seed));
     for (int k = 0; k < 4; ++k) dab(volume, {place(random), place(random), place(random)}, size(random), share(random));
     expect_sound(volume);
     EXPECT_FALSE(::testing::Test::HasFailure()) << "seed " << seed;
