@@ -100,6 +100,7 @@ class Bench:
     timeout: float
     tally: Tally
     measure: bool = False  # measurements that take minutes and decide nothing
+    smooth: bool = False  # pictures of tutorials, for the pages
 
     def run(
         self, environment: Environment, mode: str, files: list[Path], more: dict | None = None, timeout: float = 0
@@ -242,6 +243,7 @@ def main() -> int:
     parser.add_argument("--no-window", action="store_true", help="headless only")
     parser.add_argument("--no-headless", action="store_true", help="windows only")
     parser.add_argument("--figures", action="store_true", help="also measure; writes out/blender/figures.json")
+    parser.add_argument("--smooth", action="store_true", help="tutorials' pictures with smooth edges, for the pages")
     parser.add_argument("--timeout", type=float, default=1200, help="seconds for one process")
     soak_runs.add_arguments(parser)
     arguments = parser.parse_args()
@@ -256,7 +258,9 @@ def main() -> int:
             package.build([wheel], Path(folder) / "zips")
             zips = made_zips(Path(folder) / "zips")
         paths = native_paths(wheel, Path(folder) / "native")
-        bench = Bench(paths, zips, out, arguments.only, arguments.timeout, tally, arguments.figures)
+        bench = Bench(
+            paths, zips, out, arguments.only, arguments.timeout, tally, arguments.figures, smooth=arguments.smooth
+        )
         if arguments.soak:
             for run in soak_runs.runs(bench, arguments):
                 run()

@@ -34,7 +34,7 @@ def entry() -> None:
     count = 0
     for name in given.names or ["", *ALSO]:
         shutil.rmtree(taken, ignore_errors=True)
-        run(PYTHON, *program, "--no-headless", "--only", ALSO.get(name, f"tutorial_{name}"))
+        run(PYTHON, *program, "--no-headless", "--smooth", "--only", ALSO.get(name, f"tutorial_{name}"))
         for picture in sorted(taken.glob("*.png")):
             shutil.copy(picture, PLACE)
             count += 1

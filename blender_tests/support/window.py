@@ -37,6 +37,7 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
             "only": "",
             "size": [WIDTH, HEIGHT],
             "measure": bench.measure,
+            "smooth": bench.smooth,
         }
         path = Path(resources) / "job.json"
         path.write_text(json.dumps(job))

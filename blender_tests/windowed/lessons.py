@@ -78,13 +78,14 @@ def plain_window():
 
 
 def picture(screen, name, box=None):
-    """<out>/tutorials/<name>.png, of the whole window or of a box (left, below, right, above) of window pixels."""
+    """<out>/tutorials/<name>.png, of the whole window or of a box (left, below, right, above) of window pixels; smooth
+    for the pages (`run.py --smooth`)."""
     folder = screen.out / "tutorials"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
-    screen.draw_smoothly(True)
+    screen.draw_smoothly(bool(harness.job.get("smooth")))
+    yield 0.4  # what still moves comes to rest before it is filled
     yield from screen.pixels.fill_again(screen.window)
-    yield 0.4
     command = ["import", "-window", "root"]
     if box is not None:
         left, below, right, above = (int(x) for x in box)
