@@ -65,14 +65,14 @@ def test_a_budget_ends_a_step_between_two_rows():
         now[0] += 0.01
         return now[0]
 
-    parts = runs(np.random.default_rng(7))
+    parts = runs(np.random.default_rng(7), counts=(40, 30))
     prefix, steps = ProgramPrefix(block(), parts, clock=clock), 0
-    while not prefix.step(239, 0.02):
+    while not prefix.step(69, 0.02):
         steps += 1
         assert prefix.volume.to_bytes() == carved(parts, prefix.row)
-    assert steps > 3 and prefix.volume.to_bytes() == carved(parts, 239)
-    assert prefix.pose(149)[0] is TOOLS[0] and prefix.pose(150)[0] is TOOLS[1]
-    assert np.array_equal(prefix.pose(239)[1], parts[1][1][-1])
+    assert steps > 3 and prefix.volume.to_bytes() == carved(parts, 69)
+    assert prefix.pose(39)[0] is TOOLS[0] and prefix.pose(40)[0] is TOOLS[1]
+    assert np.array_equal(prefix.pose(69)[1], parts[1][1][-1])
 
 
 def test_nothing_to_simulate_is_reported():

@@ -4,6 +4,7 @@ hand's own path, computed densely in doubles."""
 import numpy as np
 import pytest
 import riffler
+import scipy.spatial
 from hands import Run, samples, way
 
 from addon.sculpt.pure import brush_stroke
@@ -57,12 +58,9 @@ def off_the_sweep(volume, centres, normals):
     reach = RADIUS + 3 * PITCH  # vertices further from every centre are not of the groove
     near = (vertices > centres.min(axis=0) - reach) & (vertices < centres.max(axis=0) + reach)
     vertices = vertices[near.all(axis=1)]
-    off, lean, along = np.empty((3, len(vertices)))
-    for k, v in enumerate(vertices):
-        way = v - centres
-        n = int(np.argmin((way**2).sum(axis=1)))
-        off[k], along[k] = np.linalg.norm(way[n]) - RADIUS, n
-        lean[k] = np.arccos(np.clip(-(way[n] @ normals[n]) / np.linalg.norm(way[n]), -1, 1))
+    distance, along = scipy.spatial.KDTree(centres).query(vertices)
+    off = distance - RADIUS
+    lean = np.arccos(np.clip(((centres[along] - vertices) * normals[along]).sum(axis=1) / distance, -1, 1))
     rim = np.arccos((RADIUS - DEPTH) / RADIUS)
     apart = np.linalg.norm(np.diff(centres, axis=0), axis=1).cumsum()
     within = np.interp(along, np.arange(len(apart)) + 1, apart)
@@ -79,7 +77,7 @@ def turned(run, centres):
     made = poses[:, :3] + RADIUS * poses[:, 3:]
     steps = np.diff(made, axis=0)
     own = np.gradient(centres, axis=0)
-    near = [int(np.argmin(((centres - m) ** 2).sum(axis=1))) for m in 0.5 * (made[1:] + made[:-1])]
+    _, near = scipy.spatial.KDTree(centres).query(0.5 * (made[1:] + made[:-1]))
     cosines = (steps * own[near]).sum(axis=1) / np.linalg.norm(steps, axis=1) / np.linalg.norm(own[near], axis=1)
     return np.arccos(np.clip(cosines, -1, 1))[3:-3]
 
