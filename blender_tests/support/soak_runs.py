@@ -20,6 +20,7 @@ STROKES = {(3, 4), (4, 5)}  # the Blenders used: the oldest, and the one in the 
 FUZZED = {(4, 5)}
 LIBRARIES = ("hypothesis", "sortedcontainers")  # pure Python, so that any Blender can run them
 SHORT = {"strokes": 500, "undos": 60, "examples": 30}
+REPEATED = 150  # strokes of a short run in all but the oldest Blender
 LONG = {"strokes": 10_000, "undos": 1000, "examples": 1000}
 LIMITS = {False: 900, True: 4 * 3600}  # s for one process of a short run, and of a long one
 
@@ -37,8 +38,10 @@ def runs(bench, arguments) -> list[Callable[[], None]]:
     chosen = dict(LONG if arguments.soak else SHORT)
     chosen |= {key: value for key in chosen if (value := getattr(arguments, key)) is not None}
     chosen |= {"seed": arguments.seed, "long": arguments.soak}
+    short = arguments.strokes is None and not arguments.soak
+    again = {**chosen, "strokes": REPEATED} if short else chosen
     return [
-        partial(_run, bench, environment, name, chosen)
+        partial(_run, bench, environment, name, chosen if environment.version[:2] == min(STROKES) else again)
         for environment in environments.find()
         if arguments.blender in environment.name and not environment.missing
         for name in _files(environment)
