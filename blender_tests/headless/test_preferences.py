@@ -288,6 +288,7 @@ def test_every_button_and_setting_has_a_tooltip_in_one_line():
     assert not bad, bad
 
 
+@common.anywhere
 def test_every_text_of_the_translations_is_one_of_the_addons():
     """In a class, or literally in the sources (drawn texts, and reasons for refusals)."""
     import ast

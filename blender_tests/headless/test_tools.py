@@ -123,6 +123,7 @@ def test_sizes_go_in_steps_as_in_sculpt_mode_and_no_key_leaves_an_undo_step():
         assert "UNDO" not in cls.bl_options
 
 
+@common.core_bound
 def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
     for unit in (1000.0, 1.0):
         bpy.ops.wm.read_homefile()
@@ -135,6 +136,7 @@ def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
         assert abs(removed / groove(20, 0.8) - 1) < 0.01, (unit, removed)
 
 
+@common.core_bound
 def test_material_is_added_within_the_stocks_box():
     common.scale(1)
     ob = common.stock(pitch=0.25, directions="xyz")
@@ -146,6 +148,7 @@ def test_material_is_added_within_the_stocks_box():
     assert hollow < volume_of(ob).volume < 24000
 
 
+@common.core_bound
 def test_material_that_the_box_cuts_off_is_reported_at_once():
     common.scale(1)
     ob = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
@@ -194,6 +197,7 @@ def test_every_copy_of_a_stroke_is_made():
         ob = common.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
 
 
+@common.core_bound
 def test_a_mask_protects_the_material_that_it_covers():
     common.scale(1)
     ob = common.stock(pitch=0.25, directions="xyz")
@@ -208,6 +212,7 @@ def test_a_mask_protects_the_material_that_it_covers():
     assert stroke((20, 15)) == {"FINISHED"} and volume_of(ob).volume < whole
 
 
+@common.core_bound
 def test_fixtures_keep_the_tool_out():
     common.scale(1)
     ob = common.stock(pitch=0.25, directions="xyz")
@@ -254,6 +259,7 @@ def least_clearance(ob, clamps):
     return min(found)
 
 
+@common.core_bound
 def test_no_tool_passes_through_a_fixture_on_its_way_up_nor_do_copies_by_symmetry():
     common.scale(1)
     ob = common.stock(pitch=0.5, directions="z")
@@ -289,6 +295,7 @@ def test_a_stroke_goes_around_an_obstacle_that_no_lift_clears():
     assert ways.max() < 1.01, "a copy went on across what it was kept out of"
 
 
+@common.core_bound
 def test_a_mirrored_fixture_is_as_solid_as_any():
     """The tool is completely inside it, and touches none of its faces."""
     common.scale(1)

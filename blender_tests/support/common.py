@@ -43,6 +43,13 @@ def anywhere(test):
     return test
 
 
+def fewer(cases):
+    """Cases of a test whose Blender must be of every version, but not in each combination: all of them in the oldest
+    and in the newest Blender, and every fifth where core-bound tests are left out."""
+    cases = list(cases)
+    return cases[::5] if "core_bound" in JOB.get("leave_out", ()) else cases
+
+
 def scale(mm_per_unit):
     """Sets the mm of one Blender unit."""
     bpy.context.scene.unit_settings.scale_length = mm_per_unit / 1000

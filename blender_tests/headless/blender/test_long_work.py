@@ -68,6 +68,7 @@ def test_waiting_work_names_what_it_waits_for():
         assert bpy.ops.riffler.cut_curve.poll() and bpy.ops.riffler.test_work.poll()
 
 
+@common.core_bound
 def test_part_and_fixtures_are_built_while_the_window_stays_responsive():
     """Nothing waits for surroundings that are being built: they are polled until they are ready."""
     programs.plan()
@@ -101,6 +102,7 @@ def test_part_and_fixtures_are_built_while_the_window_stays_responsive():
     assert len(made) == 4
 
 
+@common.core_bound
 def test_a_verification_is_made_on_a_thread():
     programs.resolved()
     programs.stock()

@@ -28,6 +28,7 @@ from support.device_sessions import (
 from support.sculpting import is_shown, live, matches_its_volume, nothing_is_left
 
 
+@common.core_bound
 def test_a_stroke_with_the_simulated_pen_is_in_volume_mesh_recording_and_cuts():
     ob = sculpt()
     before = common.content(ob).volume.volume
@@ -213,6 +214,7 @@ def test_material_is_added_stroke_by_stroke_undone_and_replayed_by_the_journal()
         bpy.data.objects.remove(bpy.data.objects[NAME])
 
 
+@common.core_bound
 def test_no_material_is_added_under_a_mask():
     ob = lowered("xyz")
     run = live().of(ob)
@@ -276,6 +278,7 @@ def test_a_session_takes_the_mode_of_the_active_tool():
     nothing_is_left()
 
 
+@common.core_bound
 def test_adding_material_where_the_box_is_full_is_reported():
     ob = sculpt()
     before = now()

@@ -74,6 +74,7 @@ def test_every_path_has_its_keys_after_one_step_that_undo_takes_back():
     assert [len(k) for k in indices(ob)] == [2] * 4 and store().identity(ob) == made
 
 
+@common.core_bound
 def test_a_path_on_which_nothing_is_free_is_named_and_listed():
     ob = laid(3, roof=True)
     bpy.ops.riffler.plan_least_tilt()

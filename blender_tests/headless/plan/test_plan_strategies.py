@@ -91,6 +91,7 @@ def test_a_curve_is_used_in_its_place_and_cyclic_ones_are_closed():
     assert np.allclose(np.ptp(tips, axis=0)[:2], 12, atol=1e-5)
 
 
+@common.core_bound
 def test_it_is_resolved_written_and_verified_as_deep_as_it_is():
     scene()
     ob = engrave()

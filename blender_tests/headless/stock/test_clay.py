@@ -74,6 +74,7 @@ def stays(before, after):
         assert np.array_equal(before.normals(direction), after.normals(direction))
 
 
+@common.core_bound
 def test_growing_the_box_five_times_moves_no_vertex_of_a_groove():
     ob = sculpt(pitch=0.25)
     path = common.curve("C", [(5, 8, 18), (20, 17, 17), (35, 15, 18)], mm_per_unit=1.0)
@@ -238,6 +239,7 @@ def test_a_mask_from_a_curve_protects_what_lies_under_it():
     matches(ob)
 
 
+@common.core_bound
 def test_masks_are_added_subtracted_inverted_and_cleared():
     ob = sculpt()
     a, b = circle("A", (12, 15, 0), 6), circle("B", (28, 15, 0), 6)
@@ -303,6 +305,7 @@ def test_a_picture_is_raised_and_engraved_to_the_requested_depth():
     )
 
 
+@common.core_bound
 def test_a_picture_that_the_box_cuts_off_is_reported_with_the_remedy():
     ob = sculpt()
     image = bpy.data.images.new("White", 8, 8, float_buffer=True)

@@ -207,6 +207,7 @@ def test_a_recording_makes_the_same_sculpt_again():
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(first.cuts, second.cuts, strict=True))
 
 
+@common.core_bound
 def test_a_recording_is_cut_with_another_tool():
     """A ball's path followed by a flat end: a slot as wide as the tool, with a half disc at either end."""
     common.scale(1)
@@ -246,6 +247,7 @@ def written():
     return said
 
 
+@common.core_bound
 def test_code_of_masked_cuts_warns_that_it_cuts_protected_material():
     from support import sculpting
 
