@@ -91,18 +91,18 @@ class Suite:
     always: bool = True  # also where no suite is named
 
 
-# Blender's windows wait much of the time: the other lane fills that in. The C++ tests have a stage of their own, with
+# Blender's windows wait much of the time: the other lanes fill that in. The C++ tests have a stage of their own, with
 # the sanitizers and without: some have threads that keep a pen's time, and next to Blender these come too late. With
 # only those last and the other sanitized tests next to Blender, the whole took no less (32 min 25 s): Blender took
 # longer by as much, and a test with a time limit failed.
 SUITES = {
     "cpp": Suite(cpp, stage=0),
     "python": Suite(python),
-    "tools": Suite(tools),
-    "docs": Suite(docs),
+    "tools": Suite(tools, lane=2),
+    "docs": Suite(docs, lane=2),
     "blender": Suite(blender, lane=1),
-    "lint": Suite(lint, always=False),
-    "asan": Suite(asan, always=False),
+    "lint": Suite(lint, lane=2, always=False),
+    "asan": Suite(asan, lane=2, always=False),
     "sanitize": Suite(sanitize, stage=2, always=False),
 }
 
