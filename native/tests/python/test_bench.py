@@ -68,6 +68,10 @@ def rows(folder: Path, job: str, section: str) -> list[dict]:
     return json.loads((folder / f"{job}.json").read_text())["sections"][section]["rows"]
 
 
+def test_help_and_completion_know_every_job():
+    assert list(command.NAMES) == list(JOBS)
+
+
 def test_every_job_writes_its_figures(quick):
     for job in JOBS:
         data = json.loads((quick / f"{job}.json").read_text())

@@ -19,8 +19,8 @@ from .parser import Parser
 HELP = "measure run time, error and memory"
 MISSING = f"riffler bench: needs riffler-bench {__version__}: in a checkout of that version, pip install ./bench"
 NAMES = (
-    *("b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "follow", "random", "stl", "decimate"),
-    *("col", "pencil", "drop", "surfaces", "gouge", "nc", "threads", "verify", "cluster", "blender"),
+    *("b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "detail", "follow", "random", "stl", "decimate"),
+    *("col", "pencil", "drop", "surfaces", "brushes", "gouge", "nc", "threads", "verify", "cluster", "blender"),
 )
 
 
