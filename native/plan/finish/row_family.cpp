@@ -65,10 +65,7 @@ class Filler {
     std::vector<int> samples;
     for (int i = 0; i < count_; ++i)
       if (near_region(i, v)) samples.push_back(i);
-    if (static_cast<int>(samples.size()) == count_)
-      add_pieces(out, family_.from, family_.to, blocked);
-    else
-      add_around(out, samples, blocked);
+    add_around(out, samples, blocked);
     return out;
   }
 
