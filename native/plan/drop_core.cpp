@@ -5,7 +5,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "geom/hypot.hpp"
 #include "geom/median_tree.hpp"
 #include "plan/grown_piece.hpp"
 #include "riffler/base/check.hpp"
@@ -76,7 +75,7 @@ struct DropCutter::Core::Search {
     const Box3& box = tree.boxes_[node];
     const double x = std::max({box.lower.x - at.x, at.x - box.upper.x, 0.0});
     const double y = std::max({box.lower.y - at.y, at.y - box.upper.y, 0.0});
-    const double rho = geom::hypot(x, y);
+    const double rho = std::sqrt(x * x + y * y);
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [part, lower] : tree.sides_)
       if (rho <= lower.rim()) least = std::min(least, lower.height(rho));
@@ -95,7 +94,7 @@ struct DropCutter::Core::Search {
       ++counts.triangles;
       const Triangle& tri = tree.triangles_[t];
       const double x = apart(tri.a.x, tri.b.x, tri.c.x, at.x), y = apart(tri.a.y, tri.b.y, tri.c.y, at.y);
-      const double rho = geom::hypot(x, y), top = std::max({tri.a.z, tri.b.z, tri.c.z});
+      const double rho = std::sqrt(x * x + y * y), top = std::max({tri.a.z, tri.b.z, tri.c.z});
       for (std::size_t s = 0; s < tree.sides_.size(); ++s) {
         const LowerSide& lower = tree.sides_[s].second;
         if (rho > lower.rim() * (1 + 1e-12) || top - lower.height(std::min(rho, lower.rim())) < stop.tip) continue;

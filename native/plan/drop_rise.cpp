@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr int kMaxSamples = 48;
+constexpr double kFine = 1e-7;  // mm: a hundredth of the smallest sensible tolerance
 
 /// The shares of the line from `from` along `way` within `rim` of the triangle's outline, seen from above: their hull.
 std::optional<Vec2> shares_in_reach(const std::array<Vec2, 3>& corners, const Vec2& from, const Vec2& way, double rim) {
@@ -79,8 +80,6 @@ class ConcavePeak {
   }
 
  private:
-  static constexpr double kFine = 1e-7;  // mm: a hundredth of the smallest sensible tolerance
-
   void insert(double s, double value) {
     int k = count_;
     while (k > 0 && s_[k - 1] > s) --k;
@@ -135,10 +134,10 @@ struct RiseSearch {
                  hv = half.x * std::abs(across.x) + half.y * std::abs(across.y);
     const double x0 = std::min(from.x, from.x + way.x), x1 = std::max(from.x, from.x + way.x);
     const double y0 = std::min(from.y, from.y + way.y), y1 = std::max(from.y, from.y + way.y);
-    const double gap = geom::hypot(std::max({box.lower.x - x1, x0 - box.upper.x, 0.0}),
-                                   std::max({box.lower.y - y1, y0 - box.upper.y, 0.0}));
+    const double gap = glm::length(
+        Vec2(std::max({box.lower.x - x1, x0 - box.upper.x, 0.0}), std::max({box.lower.y - y1, y0 - box.upper.y, 0.0})));
     const double aside = std::max(v - hv, 0.0), ahead = std::max({u - hu - length, -u - hu, 0.0});
-    const double rho = std::max(gap, geom::hypot(aside, ahead));
+    const double rho = std::max(gap, std::sqrt(aside * aside + ahead * ahead));
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [part, lower] : tree.sides_)
       if (rho <= lower.rim()) least = std::min(least, lower.height(rho));
@@ -157,9 +156,25 @@ struct RiseSearch {
     }
   }
 
+  /// The shares of the move where the triangle's plane stops the piece above `best`: elsewhere the triangle cannot.
+  Vec2 shares_over_plane(const LowerSide& side, const DropCutter::Core::Triangle& tri) const {
+    const Vec3 shift(from.x, from.y, 0);
+    const auto plane = side.on_plane(tri.a - shift, tri.b - shift, tri.c - shift);
+    if (!plane) return {0, 1};
+    const double change = glm::dot(plane->slope, Vec2(way)) - way.z;
+    const double start = plane->tip - from.z - best + kFine * (1 + std::abs(change)), end = start + change;
+    if (start > 0 && end > 0) return {0, 1};
+    if (!(start > 0) && !(end > 0)) return {1, 0};
+    return change > 0 ? Vec2(-start / change, 1) : Vec2(0, -start / change);
+  }
+
   void meet(const LowerSide& side, const DropCutter::Core::Triangle& tri) {
-    const auto range = shares_in_reach({Vec2(tri.a), Vec2(tri.b), Vec2(tri.c)}, Vec2(from), Vec2(way), side.rim());
+    const Vec2 room = shares_over_plane(side, tri);
+    if (!(room.x <= room.y)) return;
+    auto range = shares_in_reach({Vec2(tri.a), Vec2(tri.b), Vec2(tri.c)}, Vec2(from), Vec2(way), side.rim());
     if (!range) return;
+    range = Vec2(std::max(range->x, room.x), std::min(range->y, room.y));
+    if (!(range->x <= range->y)) return;
     const auto above = [&](double s) {
       const Vec3 shift(from.x + s * way.x, from.y + s * way.y, 0);
       LowerSide::Stop stop{kNever, Vec3(0), false};

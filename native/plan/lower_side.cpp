@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kAngle = 1e-15, kLastStep = 1e-9;  // rad; Newton's next step would be the square of the last one
 constexpr double kSurely = 1e-9;                    // mm, far larger than rounding errors
+// Least area of a parallelogram, seen from above, by the square of its longest edge (a slope of 88°, or 50 : 1), for
+// its plane to be known to `kPlane` of the distance from it: at most 50 × 51 × a few roundings of 1.1e-16.
+constexpr double kFlat = 0.02, kPlane = 1e-11;
 
 }  // namespace
 
@@ -36,11 +39,11 @@ double LowerSide::height(double rho) const {
 
 double LowerSide::radius_of_slope(double slope) const {
   if (arc_ == 0) return slope > cone_ ? rim_ : flat_;
-  return std::clamp(centre_.x + arc_ * slope / geom::hypot(1.0, slope), flat_, rim_);
+  return std::clamp(centre_.x + arc_ * slope / std::sqrt(1 + slope * slope), flat_, rim_);
 }
 
 void LowerSide::at(const Vec3& p, Stop& stop) const {
-  const double tip = p.z - height(std::min(geom::hypot(p.x, p.y), rim_));
+  const double tip = p.z - height(std::min(glm::length(Vec2(p)), rim_));
   if (!stop.touches || tip > stop.tip) stop = {tip, p, true};
 }
 
@@ -54,7 +57,7 @@ double LowerSide::best_on_line(double d, double slope) const {
   if (arc_ == 0) return slope < cone_ ? std::min(most, d * slope / std::sqrt((cone_ - slope) * (cone_ + slope))) : most;
   if (centre_.x == 0) {
     const double half = std::sqrt(std::max(0.0, (arc_ - d) * (arc_ + d)));
-    return std::min(most, half * slope / geom::hypot(1.0, slope));
+    return std::min(most, half * slope / std::sqrt(1 + slope * slope));
   }
   // A torus or barrel: at angle φ of the arc the slope along the line is tan φ · u / ρ, which increases, so bracketed
   // Newton iteration finds where it equals `slope`. The bracket begins where the flat end stops: there is no arc
@@ -100,7 +103,7 @@ void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
   };
   if (d <= flat_) look(sign * std::sqrt((flat_ - d) * (flat_ + d)));
   if (rim_ > flat_)
-    if (const double u = best_on_line(d, std::abs(slope)); geom::hypot(d, u) >= flat_) look(sign * u);
+    if (const double u = best_on_line(d, std::abs(slope)); std::sqrt(d * d + u * u) >= flat_) look(sign * u);
 }
 
 void LowerSide::facet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const {
@@ -116,9 +119,40 @@ void LowerSide::facet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) c
   at({p, a.z - (normal.x * (p.x - a.x) + normal.y * (p.y - a.y)) / normal.z}, stop);
 }
 
+std::optional<LowerSide::OnPlane> LowerSide::on_plane(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  const Vec3 ab = b - a, bc = c - b, ca = a - c, normal = glm::cross(ab, bc);
+  const double size2 = std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)});
+  if (!(std::abs(normal.z) > kFlat * size2)) return {};
+  const Vec2 slope(-normal.x / normal.z, -normal.y / normal.z);
+  const double steep = glm::length(slope), rho = steep > 0 ? radius_of_slope(steep) : 0.0;
+  const double error = kSurely + kPlane * (std::abs(a.x) + std::abs(a.y) + std::abs(a.z));
+  return OnPlane{slope, steep > 0 ? slope * (rho / steep) : Vec2(0),
+                 a.z - slope.x * a.x - slope.y * a.y + steep * rho - height(rho) + error};
+}
+
 void LowerSide::meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const {
-  corner(a, stop), corner(b, stop), corner(c, stop);
-  edge(a, b, stop), edge(b, c, stop), edge(c, a, stop);
+  const std::optional<OnPlane> plane = on_plane(a, b, c);
+  if (!plane) {
+    corner(a, stop), corner(b, stop), corner(c, stop);
+    edge(a, b, stop), edge(b, c, stop), edge(c, a, stop);
+    facet(a, b, c, stop);
+    return;
+  }
+  if (stop.touches && plane->tip < stop.tip) return;
+  // Towards the plane's contact, the tip on the plane rises: it is highest on the edges that face the contact.
+  const double turn = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
+  const auto outside = [&](const Vec3& s, const Vec3& t) {
+    const Vec2 way(t.x - s.x, t.y - s.y);
+    const double across = way.x * (plane->place.y - s.y) - way.y * (plane->place.x - s.x);
+    return (turn > 0 ? across : -across) <= kSurely * (std::abs(way.x) + std::abs(way.y));
+  };
+  const bool ab = outside(a, b), bc = outside(b, c), ca = outside(c, a);
+  if (ca || ab) corner(a, stop);
+  if (ab || bc) corner(b, stop);
+  if (bc || ca) corner(c, stop);
+  if (ab) edge(a, b, stop);
+  if (bc) edge(b, c, stop);
+  if (ca) edge(c, a, stop);
   facet(a, b, c, stop);
 }
 

@@ -1,6 +1,7 @@
 // Finds where a tool that comes down along its axis first touches a triangle.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "riffler/tool/tool.hpp"
@@ -27,6 +28,15 @@ class LowerSide {
   };
   /// Raises `stop` if triangle abc stops the piece earlier. The axis runs along z through (0, 0).
   void meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const;
+
+  /// How the plane of a triangle stops the piece: no lower than the triangle.
+  struct OnPlane {
+    Vec2 slope;  ///< of the plane, along x and y
+    Vec2 place;  ///< the contact, from the axis
+    double tip;  ///< height of the tip with the axis through (0, 0), mm, and the most that rounding takes from it
+  };
+  /// None of a triangle so steep or thin that rounding changes its plane.
+  std::optional<OnPlane> on_plane(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
  private:
   void at(const Vec3& p, Stop& stop) const;
