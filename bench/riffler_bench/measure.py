@@ -144,6 +144,10 @@ class Yardstick:
         return timing, thing
 
 
+def started(command: list[str], environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+
+
 def child(work: str, threads: int | None = 1, **arguments: Any) -> dict[str, Any]:
     """What the function `work` of ``children`` returns in a process of its own, and that process's ``peak_bytes``."""
     root = str(Path(__file__).resolve().parents[2])
@@ -153,7 +157,7 @@ def child(work: str, threads: int | None = 1, **arguments: Any) -> dict[str, Any
     if threads is not None:
         environment["RIFFLER_THREADS"] = str(threads)
     command = [sys.executable, "-m", "riffler_bench.children", work, json.dumps(arguments)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = started(command, environment)
     if done.returncode != 0:
         last = done.stderr.strip().splitlines()[-1:] or ["no message"]
         raise RuntimeError(f"bench {work} {arguments}: {last[0]}")

@@ -38,7 +38,7 @@ def sessions(out: Report, settings: Settings) -> None:
         Column("most that it was given", "gained", lambda e: f"{e:.3f} N·mm"),
     )
     for case, seconds in zip(CASES, MINUTES, strict=True):
-        simulated = 2.0 if settings.quick else seconds
+        simulated = 1.0 if settings.quick else seconds
         run = core.sculpting(simulated, **case)
         times = np.sort(run["seconds"].astype(float))
         memory = run["resident_mb"]

@@ -269,7 +269,7 @@ def slide(out: Report, settings: Settings) -> None:
         Column("largest change of a step N", "jump_N", report.mm),
         Column("largest difference from the integral N", "difference_N", report.mm),
     )
-    for steps in (30, 60) if settings.quick else (75, 150, 300):
+    for steps in (15, 30) if settings.quick else (75, 150, 300):
         figures = {key: np.array(value) for key, value in json.loads(core.contact_slide(steps)).items()}
         force = np.stack([figures["force_x_N"], figures["force_z_N"]], 1)
         exact = np.stack([figures["reference_x_N"], figures["reference_z_N"]], 1)

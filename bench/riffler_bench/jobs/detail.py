@@ -17,7 +17,7 @@ from ..measure import Progress, Settings, child, shares, threads, watched
 from ..report import Column, Report
 from ..rivals import LeftOutError, program
 from .decimate import drawn
-from .mesh import DEFECT_COLUMNS, defects
+from .mesh import DEFECT_COLUMNS, defects, exact_field
 
 TOLERANCES = (0.05, 0.01, 0.005, 0.001, 0.0005)  # mm
 TARGETS = {"ratio": 1.3, "fewer_xyz": 60, "fewer_z": 10}  # at 0.005 mm
@@ -160,11 +160,10 @@ def rivals(out: Report, settings: Settings, folder: Path, progress: Progress) ->
         table.row(engine=f"Riffler, to_mesh({tolerance:g})", **figures, **errors(load(folder, f"less-{tolerance:g}")))
     for way, figures in got["decimated"].items():
         table.row(engine=f"Riffler, {way}", **figures)
-    field, origin = exact.field(pitch)
-    field.tofile(folder / "field")
+    field = exact_field(settings, pitch, folder)
     for adaptivity in watched(ADAPTIVITIES, progress):
         engine = f"OpenVDB volumeToMesh, adaptivity {adaptivity:g}"
-        place = (folder / "field", *field.shape, pitch, *origin)
+        place = (folder / "field", *field["shape"], pitch, *field["origin"])
         try:
             timing = program(settings, "riffler_openvdb_mesh", *place, 1, 3, folder / "mesh", adaptivity)
         except LeftOutError as why:

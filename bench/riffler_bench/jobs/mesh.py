@@ -32,7 +32,7 @@ FIELD_MESHERS = {
 SLOW = "manifold"  # asks Python for every value: at the coarsest pitch only
 FINEST = 0.1  # mm: a field of 182 M values, for two of the others
 AT_FINEST = ("", "flying_edges", *MODES.values())
-MIDDLES = 1_000_000  # of triangles, judged at most
+MIDDLES = {"quick": 20_000, "full": 1_000_000}  # of triangles, judged at most
 # mm, at h = 0.25 on B200 and for edges of turned boxes
 TARGETS = {"b200_max": 0.0205, "b200_mean": 2e-5, "edge_max": 0.02}
 
@@ -68,9 +68,7 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
     )
     pitches, repeats = ((1.0, 0.5), 1) if settings.quick else ((1.0, 0.5, 0.25, 0.15, 0.1), 5)
     for pitch in watched(pitches, progress):
-        field, origin = exact.field(pitch)
-        field.tofile(folder / "field")
-        place = {"shape": list(field.shape), "pitch": pitch, "origin": origin.tolist()}
+        place = exact_field(settings, pitch, folder)
         for engine, work in (MODES | FIELD_MESHERS).items():
             if (work == SLOW and pitch != pitches[0]) or (pitch == FINEST and work not in AT_FINEST):
                 continue
@@ -86,7 +84,7 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
                 except LeftOutError as why:
                     table.row(engine=f"{engine}: left out, {why}", pitch=pitch)
                     break
-                figures = figures or judged(made, folder)
+                figures = figures or judged(settings, made, folder)
                 table.row(
                     engine=engine,
                     pitch=pitch,
@@ -106,7 +104,8 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
         "Triangles/s of processor time with one thread, of wall time with all. Others mesh the exact signed distance "
         "from the same part on the same lattice, which is not in their times; labels are its sign. Defects are counted "
         "after the mesh has been written as a binary STL and read again with equal vertices welded. Errors are "
-        "distances from the exact surface, at all vertices and at the middles of up to a million triangles."
+        "distances from the exact surface, at all vertices and at the middles of up to "
+        f"{report.grouped(most_middles(settings))} triangles."
     )
 
 
@@ -118,6 +117,13 @@ ERROR_COLUMNS = (
     Column("middles of triangles: largest", "middle_max_mm", report.mm),
     Column("RMS", "middle_rms_mm", report.mm),
 )
+
+
+def exact_field(settings: Settings, pitch: float, folder: Path) -> dict[str, Any]:
+    """Writes the field that others mesh, if any are named, and says where it lies."""
+    field, origin = exact.field(pitch) if settings.rivals or settings.programs else (np.zeros((0, 0, 0)), np.zeros(3))
+    field.tofile(folder / "field")
+    return {"shape": list(field.shape), "pitch": pitch, "origin": origin.tolist()}
 
 
 def field_mesh(
@@ -135,19 +141,23 @@ def field_mesh(
     return timing, Mesh(np.load(folder / "mesh.vertices.npy"), np.load(folder / "mesh.triangles.npy"))
 
 
+def most_middles(settings: Settings) -> int:
+    return MIDDLES["quick" if settings.quick else "full"]
+
+
 def defects(mesh: Mesh) -> dict[str, int]:
     audit = mesh.audit()
     return {kind: sum(int(getattr(audit, name)) for name in names) for kind, names in (("bad", BAD), ("others", OTHER))}
 
 
-def judged(mesh: Mesh, folder: Path) -> dict[str, Any]:
+def judged(settings: Settings, mesh: Mesh, folder: Path) -> dict[str, Any]:
     """Defects of the mesh that comes back from a binary STL, and its distance from B200's exact surface."""
     mesh.write(folder / "judged.stl")
     mesh = Mesh.read(folder / "judged.stl")
     vertices = np.asarray(mesh.vertices)
     off = exact.from_surface(vertices)
     triangles = np.asarray(mesh.triangles)
-    middle = exact.from_surface(vertices[triangles[:: -(-len(triangles) // MIDDLES)]].mean(1))
+    middle = exact.from_surface(vertices[triangles[:: -(-len(triangles) // most_middles(settings))]].mean(1))
     return {
         **defects(mesh),
         **spread("", off),
@@ -315,7 +325,7 @@ def error(out: Report, settings: Settings, progress: Progress) -> None:
     for engine, directions in MODES.items():
         before: dict[str, Any] = {}
         for pitch in watched(pitches, progress if directions == "z" else None):
-            row = known.get((engine, pitch)) or alone(directions, pitch)
+            row = known.get((engine, pitch)) or alone(settings, directions, pitch)
             orders = {}
             for name in ("max", "rms", "middle_rms") if before else ():
                 fall = math.log(before[f"{name}_mm"] / row[f"{name}_mm"])
@@ -329,10 +339,10 @@ def error(out: Report, settings: Settings, progress: Progress) -> None:
     )
 
 
-def alone(directions: str, pitch: float) -> dict[str, Any]:
+def alone(settings: Settings, directions: str, pitch: float) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         timing = child("mesh", pitch=pitch, directions=directions, repeats=1, path=f"{folder}/mesh.stl")
-        return timing | judged(Mesh.read(f"{folder}/mesh.stl"), Path(folder))
+        return timing | judged(settings, Mesh.read(f"{folder}/mesh.stl"), Path(folder))
 
 
 def order(value: float) -> str:

@@ -81,7 +81,7 @@ def curves(out: Report, settings: Settings, progress: Progress) -> None:
     if settings.quick:
         parts = [p for p in parts if p.name in ("90° groove", "175° groove", "blind hole", "T-slot", "pocket", "box")]
     few = slice(2, 5, 2) if settings.quick else slice(None)
-    spacing = 0.2 if settings.quick else 0.02
+    spacing = 0.5 if settings.quick else 0.02
     rivals = {"creases": Rival(CREASES[few], "°", spacing), "second difference": Rival(BENDS[few], " mm", spacing)}
     rows: dict[str, list[dict[str, Any]]] = {}
     for seed, part in enumerate(watched(parts, progress)):
