@@ -55,8 +55,8 @@ std::optional<Vec3> RowIndex::nearest(const Vec3& p) const {
         const double square = glm::dot(way, way);
         const double s = square > 0 ? std::clamp(glm::dot(p - from_[k], way) / square, 0.0, 1.0) : 0.0;
         const Vec3 at = from_[k] + s * way, off = p - at;
-        if (geom::hypot(off.x, off.y) > window_) continue;
-        if (const double d = glm::dot(off, off); d < least) least = d, best = at;
+        const double d = glm::dot(off, off);
+        if (d < least && !(geom::hypot(off.x, off.y) > window_)) least = d, best = at;
       }
   return best;
 }
