@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -17,25 +18,40 @@ edges: int = mesh.audit().open_edges
 """
 
 
-@pytest.mark.skipif(not CHECKER.exists(), reason=".envs/types is not there: run `make lint` once")
-@pytest.mark.parametrize(
-    "line, rule",
-    [
-        ("", None),
-        ("volume.carve(6.0, [[0, 0, 0, 0, 0, 1]])", "reportArgumentType"),
-        ("volume.to_mesh(tolerence=1)", "reportCallIssue"),
-        ('mesh.audit()["edges"] + 1', "reportOperatorIssue"),
-        ("volume.soften((0, 0, 0), 1)", "reportAttributeAccessIssue"),
-    ],
-)
-def test_a_script_is_checked_against_the_stub(tmp_path, line, rule):
-    (tmp_path / "script.py").write_text(RIGHT + line + "\n")
+# A line that is added to RIGHT, and the rule that it breaks.
+LINES = {
+    "right": ("", None),
+    "argument": ("volume.carve(6.0, [[0, 0, 0, 0, 0, 1]])", "reportArgumentType"),
+    "keyword": ("volume.to_mesh(tolerence=1)", "reportCallIssue"),
+    "member": ('mesh.audit()["edges"] + 1', "reportOperatorIssue"),
+    "method": ("volume.soften((0, 0, 0), 1)", "reportAttributeAccessIssue"),
+}
+
+
+@pytest.fixture(scope="module")
+def errors(tmp_path_factory):
+    """The rules that each script of LINES breaks. The checker reads the stub once for all of them."""
+    if not CHECKER.exists():
+        pytest.skip(".envs/types is not there: run `make lint` once")
+    folder = tmp_path_factory.mktemp("scripts")
+    for name, (line, _) in LINES.items():
+        (folder / f"{name}.py").write_text(RIGHT + line + "\n")
     settings = {"typeCheckingMode": "standard", "include": ["."], "extraPaths": [str(ROOT / "native" / "python")]}
-    (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings))
-    command = [CHECKER, "--project", tmp_path, "--pythonpath", PYTHON, "--outputjson"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    found = [d["rule"] for d in json.loads(done.stdout)["generalDiagnostics"] if d["severity"] == "error"]
-    assert found == ([rule] if rule else [])
+    (folder / "pyrightconfig.json").write_text(json.dumps(settings))
+    command = [CHECKER, "--project", folder, "--pythonpath", PYTHON, "--outputjson"]
+    report = json.loads(subprocess.run(command, capture_output=True, text=True, timeout=300).stdout)
+    assert report["summary"]["filesAnalyzed"] == len(LINES)
+    found = {name: [] for name in LINES}
+    for finding in report["generalDiagnostics"]:
+        if finding["severity"] == "error":
+            found[Path(finding["file"]).stem].append(finding["rule"])
+    return found
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_a_script_is_checked_against_the_stub(errors, name):
+    rule = LINES[name][1]
+    assert errors[name] == ([rule] if rule else [])
 
 
 def test_what_agreed_is_not_checked_again_until_something_changes(tmp_path, monkeypatch):
