@@ -9,10 +9,14 @@ left out, and the reason printed; Blender's run in blender_tests/headless/test_d
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
+import signal
 import subprocess
 import sys
 import tempfile
+import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -115,19 +119,53 @@ def picture_problems(documents: dict[Path, Document]) -> list[str]:
     return [f"{path.relative_to(ROOT)}: no document shows it" for path in pictures if path not in shown]
 
 
+def run_command(line: str, folder: str) -> tuple[int, str]:
+    """Runs a command line of riffler in a child of this process, which has imported riffler: starting one that imports
+    it takes 0.2 s. Returns its exit code, and what it printed."""
+    from riffler import cli
+
+    sys.stdout.flush()
+    with tempfile.TemporaryFile("w+") as printed:
+        child = os.fork()
+        if child == 0:
+            status = 1
+            try:
+                signal.alarm(SECONDS)  # ends the child
+                os.chdir(folder)
+                os.dup2(printed.fileno(), 1), os.dup2(printed.fileno(), 2)
+                sys.stdout, sys.stderr = (os.fdopen(fd, "w", buffering=1, closefd=False) for fd in (1, 2))
+                os.environ |= tool_environment()
+                status = cli.main(shlex.split(line)[1:])
+            except SystemExit as end:
+                status = end.code if isinstance(end.code, int) else end.code is not None
+            except BaseException:
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush(), sys.stderr.flush()
+                os._exit(status)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        printed.seek(0)
+        return code, printed.read()
+
+
+def run_script(name: str, folder: str) -> tuple[int, str]:
+    done = subprocess.run([PYTHON, name], cwd=folder, env=tool_environment(), timeout=SECONDS, check=False,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    return done.returncode, done.stdout
+
+
 def example_problems(document: Document) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         steps = []
         if document.blocks:
             script = Path(folder, document.path.name + ".py")
             script.write_text("\n".join(document.python))
-            steps.append((f"{document.name}: its Python examples", [str(PYTHON), script.name]))
-        steps += ((f"{document.name}:{number}: {line}", ["sh", "-c", line]) for number, line in document.commands)
-        for what, command in steps:
-            result = subprocess.run(command, cwd=folder, env=tool_environment(), timeout=SECONDS, check=False,
-                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
-            if result.returncode != 0:
-                return [f"{what}: exit code {result.returncode}\n{result.stdout}"]
+            steps.append((f"{document.name}: its Python examples", run_script, script.name))
+        steps += ((f"{document.name}:{number}: {line}", run_command, line) for number, line in document.commands)
+        for what, run, argument in steps:
+            code, printed = run(argument, folder)
+            if code != 0:
+                return [f"{what}: exit code {code}\n{printed}"]
     return []
 
 
