@@ -41,7 +41,7 @@ def left_out(preset: str) -> str:
 
 def print_slowest(what: str, times: list[tuple[float, str]]) -> None:
     """The tests to look at first where the whole is too slow: seconds and name of each."""
-    say(f"{what}: the slowest of {len(times)} tests, which took {sum(t for t, _ in times):.0f} s together")
+    say(f"{what}: the costliest of {len(times)} tests, which took {sum(t for t, _ in times):.0f} s of processor time")
     for seconds, name in sorted(times, reverse=True)[:SLOWEST]:
         print(f"  {seconds:7.2f} s  {name}")
 

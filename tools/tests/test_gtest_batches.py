@@ -22,7 +22,8 @@ for name in options["gtest_filter"].split(":"):
     if "Hangs" in name: time.sleep(60)
     failed |= "Fails" in name
     failure = "<failure/>" if "Fails" in name else ""
-    cases += f'<testcase classname="Few" name="{{name[4:]}}" time="0.5">{{failure}}</testcase>'
+    recorded = '<properties><property name="processor_seconds" value="0.25"/></properties>' if "Records" in name else ""
+    cases += f'<testcase classname="Few" name="{{name[4:]}}" time="0.5">{{failure}}{{recorded}}</testcase>'
 open(options["gtest_output"].removeprefix("xml:"), "w").write(f"<testsuites>{{cases}}</testsuites>")
 sys.exit(failed or "Leaks" in str(options))
 """
@@ -51,6 +52,11 @@ def test_passing_tests_report_their_times_and_excluded_ones_do_not_run(tmp_path)
     times = gtest_batches.run_tests(program(tmp_path, *kinds), "LeftOut|Nothing")
     assert sorted(name for _, name in times) == sorted(f"Few.Passes/{k}" for k in range(30))
     assert {seconds for seconds, _ in times} == {0.5}
+
+
+def test_a_recorded_processor_time_replaces_the_time(tmp_path):
+    times = gtest_batches.run_tests(program(tmp_path, "Passes", "Records"))
+    assert sorted(times) == [(0.25, "Few.Records"), (0.5, "Few.Passes")]
 
 
 def test_failing_tests_are_named_and_their_output_is_shown(tmp_path, capfd):
