@@ -8,6 +8,7 @@
 #include "marching/pick_scenes.hpp"
 #include "mesh/closest.hpp"
 #include "riffler/marching/to_mesh.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::marching::pick_test {
@@ -79,9 +80,9 @@ struct Ray {
   Vec3 origin, direction;
 };
 
-/// From anywhere to anywhere, to vertices and along edges, across and along the axes, from outside and inside.
-Ray random_ray(Random& random, const Mesh& mesh) {
-  const Box3 box = bounds(mesh);
+/// From anywhere to anywhere, to vertices and along edges, across and along the axes, from outside and inside of the
+/// mesh's box.
+Ray random_ray(Random& random, const Mesh& mesh, const Box3& box) {
   const auto somewhere = [&](double share) {
     const Vec3 s(random.uniform(-share, 1 + share), random.uniform(-share, 1 + share),
                  random.uniform(-share, 1 + share));
@@ -120,12 +121,13 @@ TEST(Pick, FindsTheFirstTriangleOfRaysOfAllKinds) {
     const Mesh mesh = mesher.mesh();
     const Reference reference(mesh);
     // The corners' own distance from the origin rounds.
-    const double near = 1e-9 + 1e-14 * glm::length(bounds(mesh).upper);
+    const Box3 box = bounds(mesh);
+    const double near = 1e-9 + 1e-14 * glm::length(box.upper);
     Random random(3);
     PickStats stats;
     int hits = 0, wrong = 0;
     for (int n = 0; n < 6000 && wrong < 3; ++n) {
-      Ray ray = random_ray(random, mesh);
+      Ray ray = random_ray(random, mesh, box);
       if (ray.direction == Vec3(0)) continue;
       const Reference::Met sure = reference.first_for_sure(ray.origin, glm::normalize(ray.direction));
       const Hit hit = mesher.pick(ray.origin, random.power_of_ten(-9, 9) * ray.direction, stats);
@@ -179,7 +181,8 @@ TEST(Pick, LetsNoRayOutThroughEdgesAndVertices) {
     const std::vector<Vec3> points = not_on_the_rim(mesh, inside);
     EXPECT_GT(points.size(), 3 * mesh.vertices.size()) << scene.name << ", of four for each vertex";
     std::size_t out = 0, late = 0;
-    for (const Vec3& p : points) {
+    for (std::size_t k = 0; k < points.size(); k += test::kSanitized ? 5 : 1) {
+      const Vec3& p = points[k];
       const Hit hit = mesher.pick(inside, p - inside, stats);
       out += !hit;
       late += hit && hit->distance > glm::distance(p, inside) * (1 + 1e-12) + 1e-9;
@@ -197,9 +200,10 @@ TEST(Pick, TouchesVerticesAlongTheAxes) {
     const Box3 box = bounds(mesh);
     PickStats stats;
     std::size_t missed = 0;
-    for (const Vec3& v : mesh.vertices)
+    for (std::size_t k = 0; k < mesh.vertices.size(); k += test::kSanitized ? 5 : 1)
       for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
+          const Vec3& v = mesh.vertices[k];
           Vec3 origin = v, direction(0);
           origin[axis] = sign > 0 ? std::floor(box.lower[axis]) - 8 : std::ceil(box.upper[axis]) + 8;
           direction[axis] = sign;
@@ -267,13 +271,14 @@ TEST(Pick, FollowsTheMesherToTheBit) {
   Mesher mesher(volume);
   Random random(8);
   PickStats stats, other;
-  for (int step = 0; step < 12; ++step) {
+  for (int step = 0; step < test::cases(12, 3); ++step) {
     test::nick(volume, random);
     mesher.update(volume);
     Mesher anew(volume);
     const Mesh mesh = anew.mesh();
+    const Box3 box = bounds(mesh);
     for (int n = 0; n < 300; ++n) {
-      const Ray ray = random_ray(random, mesh);
+      const Ray ray = random_ray(random, mesh, box);
       ASSERT_TRUE(same(mesher.pick(ray.origin, ray.direction, stats), anew.pick(ray.origin, ray.direction, other)));
     }
   }
@@ -324,7 +329,8 @@ TEST(FrozenSurface, KeepsTheStateOfTheMesher) {
   {
     Mesher mesher(volume);
     const Mesh mesh = mesher.mesh();
-    for (int n = 0; n < 500; ++n) rays.push_back(random_ray(random, mesh));
+    const Box3 box = bounds(mesh);
+    for (int n = 0; n < 500; ++n) rays.push_back(random_ray(random, mesh, box));
     PickStats stats;
     for (int step = 0; step < 10; ++step) {
       frozen.push_back(mesher.freeze(stats));
