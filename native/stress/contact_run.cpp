@@ -148,9 +148,9 @@ ContactTally ContactResults::total() const {
 void run_contact_session(const ContactOptions& options, std::uint64_t number, ContactResults& out) {
   ContactSession session(options.seed, number);
   ContactTally& tally = out.scenes[static_cast<std::size_t>(session.scene)];
-  for (long k = 0; k < kPosesOfSession; ++k) {
+  for (long k = 0; k < options.poses; ++k) {
     const Pose pose = draw_pose(session.random, session.part, session.tool);
-    const long count = static_cast<long>(number) * kPosesOfSession + k;
+    const long count = static_cast<long>(number) * options.poses + k;
     ++tally.poses;
     std::string problem;
     try {
@@ -167,7 +167,7 @@ void run_contact_session(const ContactOptions& options, std::uint64_t number, Co
 ContactResults run_contacts(const ContactOptions& options, long poses,
                             const std::function<bool(const ContactResults&)>& progress) {
   ContactResults out;
-  for (long n = 0; n * kPosesOfSession < poses; ++n) {
+  for (long n = 0; n * options.poses < poses; ++n) {
     run_contact_session(options, static_cast<std::uint64_t>(n), out);
     if (progress && !progress(out)) break;
   }

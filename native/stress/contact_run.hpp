@@ -12,13 +12,14 @@
 
 namespace riffler::stress {
 
+/// Poses of a session with one part and one tool; each has one query, one distance and one query with a budget.
+constexpr int kPosesOfSession = 64;
+
 struct ContactOptions {
   std::uint64_t seed = 1;
-  int reference_every = 64;  ///< poses between two comparisons with the independent reference
+  int reference_every = 64;     ///< poses between two comparisons with the independent reference
+  int poses = kPosesOfSession;  ///< of a session
 };
-
-/// Poses of a session with one part and one tool; each has one query, one distance and one query with a budget.
-constexpr long kPosesOfSession = 64;
 
 struct ContactFailure {
   std::uint64_t seed, session;

@@ -6,6 +6,7 @@
 #include "nurbs/quadrics.hpp"
 #include "riffler/mesh/audit.hpp"
 #include "riffler/nurbs/surface.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::nurbs::to_mesh_test {
@@ -104,7 +105,7 @@ TEST(SurfaceToMesh, JoinsPatchesThatShareAnEdgeInAnyDirection) {
 TEST(SurfaceToMesh, IsWithinToleranceOfRandomPatchesInBothDirections) {
   std::mt19937 random(7);
   for (const double weights : {1.0, 10.0, 1e3})
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < test::cases(6, 2); ++k) {
       const Patch patch = shapes::random_patch(random, 1 + k % 4, 1 + k % 3, weights);
       const Surface surface({patch});
       const double tolerance = k % 2 ? 0.05 : 0.5;

@@ -81,7 +81,7 @@ TEST(Swarf, AConeIsTouchedAlongItsRulings) {
       },
       1440, 1);
   const double from_axis = foot - radius * std::tan(lean) + radius / std::cos(lean);
-  const PencilPath path = ring_path(radius, from_axis, {std::cos(lean), std::sin(lean)}, 90);
+  const PencilPath path = ring_path(radius, from_axis, {std::cos(lean), std::sin(lean)}, test::cases(90, 2));
   const Swarf found = swarf(path, cone, cutters::ball(6, 20));
   const double facets = foot * (1 - std::cos(kPi / 1440));
   for (std::size_t k = 0; k < path.size(); ++k) {

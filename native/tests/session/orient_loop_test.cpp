@@ -245,7 +245,7 @@ TEST(OrientLoop, MinutesOfPlanningByFeelGiveTheHandNoEnergy) {
   const collide::Assembly assembly(test::wide_shank());
   bench.run(test::kSanitized ? 10 : 60, [&](const OrientTick& tick) {
     least = std::min(least, tick.energy);
-    if (++ticks % 4 == 0) {
+    if (++ticks % (test::kSanitized ? 16 : 4) == 0) {
       const double depth = -obstacles.nearest(assembly, tick.tool).distance;
       deepest = std::max(deepest, depth), lied += depth > tick.depth + 1e-6;
     }

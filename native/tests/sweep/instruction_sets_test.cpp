@@ -42,7 +42,7 @@ std::vector<Pose> random_path() {
 }
 
 Result carved(const Tool& tool, const char* directions, const std::vector<Pose>& path) {
-  Result out{Volume::block({{{0, 0, 0}, {31, 29, 11}}, 0.37, directions}), {}};
+  Result out{Volume::block({{{0, 0, 0}, {31, 29, 11}}, test::kSanitized ? 0.74 : 0.37, directions}), {}};
   CarveOptions options;
   options.dt.assign(path.size() - 1, 0.001);
   out.cut = carve(out.volume, tool, path, options);

@@ -23,7 +23,7 @@ TEST(MachineCheck, ReportsExactlyTheRowsThatTheWriterRefuses) {
   const std::vector<nc::WriteOptions> machines = test::all_machines();
   test::RandomRows rows(23);
   int found = 0;
-  for (int round = 0; round < test::cases(60); ++round) {
+  for (int round = 0; round < test::cases(60, 8); ++round) {
     const nc::Program program = rows.program();
     for (const nc::WriteOptions& how : machines) {
       const auto refused = refused_by_writer(program, how);

@@ -8,6 +8,7 @@
 #include "dexel/shapes.hpp"
 #include "geom/math.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::dexel::from_mesh_report_test {
 namespace {
@@ -278,7 +279,7 @@ TEST(FromOpenMesh, ReportsSmoothlyAndCancelsEverywhere) {
     EXPECT_GE(shares[k], shares[k - 1]);
     EXPECT_LT(shares[k] - shares[k - 1], 0.12);
   }
-  for (double limit = 0.02; limit < 1; limit += 0.11)
+  for (double limit = 0.02; limit < 1; limit += test::kSanitized ? 0.33 : 0.11)
     EXPECT_THROW(from_mesh(mesh, frame, [&](double share) { return share < limit; }), Cancelled) << limit;
 }
 

@@ -228,6 +228,7 @@ TEST(Decimate, ReportsAfterAFewThousandTriangles) {
   decimate(mesh, {{}, 0.01}, [&](double) { return ++told > 0; });
   EXPECT_GT(told, mesh.triangles.size() / 2000);
   for (const double share : {0.0, 0.01, 0.1, 0.15, 0.3, 0.7, 0.8, 0.9}) {
+    if (test::kSanitized && share != 0.01 && share != 0.15 && share != 0.7) continue;
     std::size_t after = 0;
     EXPECT_THROW(decimate(mesh, {{}, 0.01},
                           [&](double now) {

@@ -404,7 +404,7 @@ std::size_t fewest(std::span<const Vec3> points, double tolerance) {
 TEST(ArcFit, FewPiecesAreHardlyMoreThanTheFewest) {
   stress::Random random(73);
   std::size_t greedy = 0, least = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::cases(60, 6); ++round) {
     Points points = random_curve(random, 60);
     const double noise = random.one_in(2) ? 0 : 1e-3;
     for (Vec3& p : points) p += noise * random.direction();

@@ -10,6 +10,7 @@
 
 #include "nc/machine/machines.hpp"
 #include "nc/write/subdivider.hpp"
+#include "support/effort.hpp"
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
 
@@ -172,7 +173,7 @@ TEST(Subdivider, HoldsTheAxisBetweenBlocksForAnyMove) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit;
   std::size_t most = 0;
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < test::cases(1500); ++round) {
     Vec3 oa = glm::normalize(Vec3(normal(random), normal(random), normal(random)));
     Vec3 ob = glm::normalize(Vec3(normal(random), normal(random), normal(random)));
     if (round % 3 == 1) {
