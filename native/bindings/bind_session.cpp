@@ -56,11 +56,18 @@ FrameView frame(SharedSession& self) {
   return with_last(self, self.session->frame(use.volume));
 }
 
+/// What the journal says of the session after its strokes.
+session::JournalNotes last_notes(const SharedSession& self) {
+  const session::SculptLoop* loop = self.session->loop();
+  if (!loop || loop->held_steps() == 0) return {};
+  return {{"waits", std::to_string(loop->held_steps()) + " steps: " + haptics::SculptStep::kHeldText}};
+}
+
 FrameView stop(SharedSession& self) {
   const NoGil release;
   const Using use(self);
   bool kept = true;
-  const auto close = [&] { kept = !self.sink || self.sink->close(); };
+  const auto close = [&] { kept = !self.sink || self.sink->close(last_notes(self)); };
   FrameView out;
   try {
     out = with_last(self, self.session->stop(use.volume));

@@ -64,6 +64,9 @@ void bind_ticks(py::class_<F>& c, const FrameWords& words) {
           "missed", [](const F& f) { return rows(f, [](const T& t) { return t.missed ? 1.0 : 0.0; }); },
           "(n,) 1 where a step was missed and the last force was held.")
       .def_property_readonly(
+          "held", [](const F& f) { return rows(f, [](const T& t) { return t.held ? 1.0 : 0.0; }); },
+          "(n,) 1 where the tool did not move, because its depth in the obstacles was not found in time.")
+      .def_property_readonly(
           "tool", [](const F& f) { return from_poses({f.last.tool}).reshape({6}); }, "(6,) now.")
       .def_property_readonly(
           "grip", [](const F& f) { return from_poses({f.last.grip}).reshape({6}); }, "(6,) now.")

@@ -1,5 +1,6 @@
 #include "riffler/session/journal_sink.hpp"
 
+#include <exception>
 #include <utility>
 
 #include "session/journal_stream.hpp"
@@ -13,12 +14,14 @@ struct JournalSink::Core {
   }
   void owe(int strokes) noexcept;
   bool settle() noexcept;
+  bool add(const JournalNotes& notes);
 
   std::unique_ptr<JournalWriter> writer_;
   JournalStream stream_;
   int tool_;
   double tolerance_;
   int owed_ = 0;  // pending undo (< 0) or redo of strokes, for lack of room
+  std::string note_problem_;
 };
 
 JournalSink::JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double tolerance,
@@ -62,18 +65,33 @@ bool JournalSink::Core::settle() noexcept {
   return owed_ == 0;
 }
 
-bool JournalSink::close() {
+/// False if the disk refuses them.
+bool JournalSink::Core::add(const JournalNotes& notes) {
+  try {
+    stream_.use([&](JournalWriter& writer) {
+      for (const auto& [key, value] : notes) writer.add_note(key, value);
+      writer.sync();
+    });
+  } catch (const std::exception& e) {
+    note_problem_ = e.what();
+  }
+  return note_problem_.empty();
+}
+
+bool JournalSink::close(const JournalNotes& notes) {
   Core& core = *core_;
   core.stream_.end();
   bool done = core.stream_.stop();
   if (!core.settle()) done = false;
   if (core.owed_ == 0 && core.stream_.waiting() > 0) done = core.stream_.stop();
+  if (done && !notes.empty()) done = core.add(notes);
   core.writer_->close();
   return done;
 }
 
 std::string JournalSink::problem() const {
-  return core_->stream_.problem();
+  const std::string problem = core_->stream_.problem();
+  return problem.empty() ? core_->note_problem_ : problem;
 }
 
 std::size_t JournalSink::waiting() const noexcept {

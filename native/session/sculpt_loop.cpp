@@ -155,7 +155,10 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
     tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
     tick.held = r.held;
-    if (r.held) tick.problem = haptics::SculptStep::kHeldText;
+    if (r.held) {
+      tick.problem = haptics::SculptStep::kHeldText;
+      held_steps_.fetch_add(1, std::memory_order_relaxed);
+    }
     return wrench_extrapolator_.stepped(limited_touch(scene.workspace.to_grip(r.on_grip), dt, cutting), dt);
   } catch (const std::bad_alloc&) {
     exchange_.changed(scene.carver.replaced());

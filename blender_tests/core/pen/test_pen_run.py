@@ -127,3 +127,18 @@ def test_an_unplugged_pen_has_no_force_and_a_reason_and_gets_its_force_again():
     finally:
         run.halt()
         run.close()
+
+
+def test_a_tool_that_waits_for_a_query_says_so():
+    part = riffler.Volume.block((-30, -30, -20), (30, 30, -0.01), 1.0).to_mesh()
+    options = {"at": (0, 0, 0, 0, 0, 1), "obstacles": riffler.Collider(part), "budget": 0.0}  # no time for queries
+    run = pen_run.PenRun(riffler.pen.open("simulated"), BALL, options)
+    run.prepare(riffler.Volume.block((-30, -30, -20), (30, 30, 0), 1.0))
+    run.start()
+    end = time.monotonic() + 20
+    while "the tool waits" not in run.why and time.monotonic() < end:
+        run.look()
+        time.sleep(0.02)
+    run.halt()
+    run.close()
+    assert "the tool waits" in run.why

@@ -5617,6 +5617,11 @@ class SessionFrame:
         (n, 6) of the grip, in the device's frame.
         """
     @property
+    def held(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) 1 where the tool did not move, because its depth in the obstacles was not found in time.
+        """
+    @property
     def in_stroke(self) -> bool:
         """
         Whether a stroke was in progress when the loop handed over the frame's tiles.
@@ -6292,6 +6297,11 @@ class OrientFrame:
     def grips(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 6) of the grip, in the device's frame.
+        """
+    @property
+    def held(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) 1 where the tool did not move, because its depth in the obstacles was not found in time.
         """
     @property
     def held(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -55,7 +55,7 @@ def test_the_simulated_pen_carves_and_the_replay_is_the_same_to_the_bit(tmp_path
     assert not session.running
     assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
     journal = riffler.Journal.load(tmp_path / "a.rjournal")
-    assert journal.notes["who"] == "the tests"
+    assert journal.notes["who"] == "the tests" and "waits" not in journal.notes
     assert sum(s.removed.sum() for s in journal.strokes) == pytest.approx(stock().volume - volume.volume, rel=1e-9)
     assert any(np.abs(s.forces).max() > 0.01 for s in journal.strokes)
     told = sum(frame.removed.sum() for frame in seen)
@@ -405,3 +405,17 @@ def test_a_hand_that_turns_turns_the_tool_about_the_pivot(pivot):
 def test_a_bad_pivot_is_named():
     with pytest.raises(ValueError, match="pivot must be at most 1000 mm"):
         riffler.Session(stock(1.0), BALL, pivot=float("nan"))
+
+
+def test_a_tool_that_waits_for_a_query_is_reported_in_frames_and_journal(tmp_path):
+    part = riffler.Volume.block((-30, -30, -20), (30, 30, -0.01), 1.0).to_mesh()
+    with riffler.pen.open("simulated") as pen:
+        options = {"at": (0, 0, 0, 0, 0, 1), "obstacles": riffler.Collider(part), "budget": 0.0}  # no time for queries
+        session = riffler.Session(stock(), BALL, pen, **options)
+        session.journal(tmp_path / "held.rjournal")
+        with session:
+            seen = frames(session, 20, lambda frame: len(frame) and frame.held[-1])
+    waits = [frame for frame in seen if len(frame) and frame.held[-1]]
+    assert waits and all("the tool waits" in frame.problem for frame in waits)
+    note = riffler.Journal.load(tmp_path / "held.rjournal").notes["waits"]
+    assert int(note.split()[0]) >= sum(frame.held.sum() for frame in seen) > 0 and "the tool waits" in note

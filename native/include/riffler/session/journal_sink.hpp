@@ -3,12 +3,17 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "riffler/session/journal_file.hpp"
 #include "riffler/session/journal_stream_options.hpp"
 #include "riffler/session/stroke_sink.hpp"
 
 namespace riffler::session {
+
+/// Keys and values of Journal::notes().
+using JournalNotes = std::vector<std::pair<std::string, std::string>>;
 
 /// A StrokeSink that writes to a JournalWriter through a ring buffer and a thread of its own.
 class JournalSink final : public StrokeSink {
@@ -26,9 +31,9 @@ class JournalSink final : public StrokeSink {
   void undo(std::size_t strokes) noexcept override;
   void redo(std::size_t strokes) noexcept override;
 
-  /// Call it when none of the functions above is called any more: writes everything to disk and closes the file.
-  /// Returns false if the disk refuses some of it; see problem().
-  bool close();
+  /// Call it when none of the functions above is called any more: writes everything and `notes` to disk, and closes the
+  /// file. Returns false if the disk refuses some of it; see problem().
+  bool close(const JournalNotes& notes = {});
   /// Why rows wait or were refused; empty if all is well. Any thread.
   std::string problem() const;
   /// Number of rows not written yet.

@@ -96,6 +96,8 @@ class SculptLoop final : public PenLoop<SculptTick> {
 
   /// Ends the last stroke and informs the sink. By any thread, after the last step.
   void finish() noexcept;
+  /// Number of steps in which the tool did not move (SculptTick::held). By any thread.
+  std::uint64_t held_steps() const noexcept { return held_steps_.load(std::memory_order_relaxed); }
 
  private:
   struct Scene;
@@ -125,6 +127,7 @@ class SculptLoop final : public PenLoop<SculptTick> {
   TileExchange::Mark serving_;            // of the state that is being prepared
   std::atomic<std::uint32_t> served_{0};  // parts of states prepared
   std::atomic<std::uint32_t> dead_man_mask_;
+  std::atomic<std::uint64_t> held_steps_{0};
 };
 
 }  // namespace riffler::session
