@@ -9,6 +9,7 @@ namespace riffler::pen {
 
 void DriverSettings::validate() const {
   base::require_positive(read_timeout, "read_timeout");
+  base::require_positive(late, "late");
   base::require_positive(silence, "silence");
   base::require_positive(first_retry, "first_retry");
   base::require_positive(longest_retry, "longest_retry");
@@ -78,7 +79,11 @@ void DriverLoop::drive() noexcept {
   const double dt = has_stepped_ ? now - stepped_ : 0;
   has_stepped_ = true;
   stepped_ = now;
-  if (!put(step_.step(status_.sample, now, dt), now)) lose(counts.write_errors);
+  haptics::SafeWrench safe = step_.step(status_.sample, now, dt);
+  // By then the device's watchdog has ended the force: the wrench of an old pose would be a blow. The next step, whose
+  // dt is as long, ends the force properly.
+  if (clock_.now() - now > settings_.late) safe = {};
+  if (!put(safe, now)) lose(counts.write_errors);
 }
 
 /// Waits for a report and reads all that have arrived: only the newest counts, and a queue is a delay that the hand

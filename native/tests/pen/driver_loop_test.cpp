@@ -341,6 +341,34 @@ TEST(DriverLoop, AFloodOfReportsDoesNotDelayTheStep) {
   EXPECT_EQ(b.counts().reports, 256U);
 }
 
+TEST(DriverLoop, TheWrenchOfAStepThatTakesTooLongIsNotSent) {
+  Script b;
+  /// Pushes through the gate of all forces, and takes `takes` s for a step.
+  struct Slow final : PenStep {
+    explicit Slow(VirtualClock& c) : clock(c) { safety.switch_on(); }
+    haptics::SafeWrench step(const PenSample&, double, double) noexcept override {
+      clock.time += takes;
+      for (int k = 0; k < 1000; ++k)
+        safety.observe({.dt = 1e-3, .pose = {{0, 0, 0}, {0, 0, 1}}, .homed = true, .dead_man = true}),
+            last = safety.release({{0, 0, 1}, {}});
+      return last;
+    }
+    VirtualClock& clock;
+    haptics::Safety safety{haptics::SafetySettings{}};
+    haptics::SafeWrench last;
+    double takes = 0;
+  } slow(b.clock);
+  DriverLoop loop(b.model, slow, b.connector, b.clock, std::make_unique<FakeTransport>(b.pen.device));
+  for (const double takes : {0.0, 0.019, 0.021, 0.3, 0.0}) {
+    slow.takes = takes;
+    b.send(input(1));
+    loop.tick();
+    ASSERT_NEAR(slow.last.wrench().force.z, 1, 1e-9);
+    EXPECT_EQ(loop.status().wrench == Wrench{}, takes > 0.02) << takes;
+    EXPECT_TRUE(takes <= 0.02 || b.last_output().enable == 0);
+  }
+}
+
 TEST(DriverLoop, WrongSettingsNameTheField) {
   DriverSettings settings;
   settings.silence = -1;

@@ -6,6 +6,7 @@ namespace riffler::pen {
 /// Time-outs and retries of a device's thread.
 struct DriverSettings {
   double read_timeout = 0.01;  ///< s without a report after which the step runs with the old sample
+  double late = 0.02;          ///< s that a step may take; the wrench of a later one is replaced by zero
   double silence = 0.25;       ///< s without a report after which a periodic device counts as disconnected
   double first_retry = 0.1;    ///< s before the first attempt to reconnect; doubled after every failure …
   double longest_retry = 2;    ///< … up to this
