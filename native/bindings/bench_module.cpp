@@ -98,11 +98,13 @@ void bind_contact(py::module_& m) {
   m.def("contact_part_names", &bench::contact_part_names, "Parts that contact_times makes itself.");
   m.def(
       "contact_budgets",
-      [](int squares, const std::string& tool, int poses, const std::vector<double>& budgets) {
-        return bench::contact_budgets(contact_options(squares, tool, poses), budgets);
+      [](int squares, const std::string& tool, int poses, const std::vector<double>& budgets, const std::string& part) {
+        bench::ContactOptions options = contact_options(squares, tool, poses);
+        options.part = part;
+        return bench::contact_budgets(options, budgets);
       },
-      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("budgets"), Unlocked(),
-      "Time, missed depth and its bound with budgets in s: JSON.");
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("budgets"), py::arg("part") = "", Unlocked(),
+      "Time, missed depth and its bound with budgets in s, on a part as for contact_times: JSON.");
   m.def(
       "contact_errors",
       [](int squares, const std::string& tool, int poses, std::size_t points, int brackets, double gap) {

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import statistics
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,10 @@ from ..rivals import LeftOutError, program
 
 SQUARES = {"quick": (40,), "full": (100, 316)}  # of two triangles, along each side
 TOOLS = ("long", "short")
+PART_BUDGETS = (20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3)  # s
 BUDGETS = (5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3)  # s
 TARGETS = {"mean_us": 80, "p99_us": 350, "clearance_us": 100, "mean_ratio": 0.55, "p99_ratio": 0.35}
-FCL = "FCL OBB, tool mesh"
+FCL, COAL = "FCL OBB, tool mesh", "Coal OBBRSS, tool mesh"
 CAD_PARTS = ("fandisk", "ktoolcav", "ktoolcor", "spider")  # files that are looked for among the models
 PLAIN = ("bore", "wall")  # where a shank would be as wide as the bore
 ROUNDING = 1e-9  # mm
@@ -30,7 +32,8 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("col", {"targets": TARGETS})
     done = progress or (lambda share: None)
     times(out, settings, lambda share: done(0.4 * share))
-    parts(out, settings, lambda share: done(0.4 + 0.15 * share))
+    parts(out, settings, lambda share: done(0.4 + 0.1 * share))
+    part_budgets(out, settings, lambda share: done(0.5 + 0.05 * share))
     budgets(out, settings)
     done(0.6)
     errors(out, settings, lambda share: done(0.6 + 0.35 * share))
@@ -132,9 +135,11 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         Column("FCL, 99 %", "fcl_p99_s", report.micro),
         Column("Riffler ÷ FCL: mean", "mean_ratio", report.ratio),
         Column("99 %", "p99_ratio", report.ratio),
+        Column("Riffler ÷ Coal: mean", "coal_mean_ratio", report.ratio),
+        Column("99 %", "coal_p99_ratio", report.ratio),
+        Column("out of reach", "away_s", report.micro),
     )
-    paths = [settings.models / f"{name}.stl" for name in CAD_PARTS] if settings.models else []
-    found = [path for path in paths if path.exists()]
+    found = models(settings)
     named = [*core.contact_part_names(), *map(str, found)]
     poses, repeats = (20, 1) if settings.quick else (500, 3)
     cases = [(part, tool) for part in named for tool in (("plain",) if part in PLAIN else ("plain", "long"))]
@@ -151,8 +156,14 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         "Half of the poses on parts from files are on the pencil paths of the ball, the others anywhere on the part: "
         "from 2 mm above to 0.3 mm deep. Bore and wall are one cylinder, R20 × 60 of 360 facets, with the tool along "
         "it. In doubt: a depth that may be more than 0.05 mm larger than most of three answers. FCL: oriented boxes, "
-        "tool as a mesh."
+        "Coal: oriented boxes and swept spheres, tool as a mesh. Out of reach: the tool 1 000 mm above each pose."
     )
+
+
+def models(settings: Settings) -> list[Path]:
+    """Parts from files that are there."""
+    paths = [settings.models / f"{name}.stl" for name in CAD_PARTS] if settings.models else []
+    return [path for path in paths if path.exists()]
 
 
 def add_part(table: report.Section, figures: dict[str, Any], part: str, tool: str) -> None:
@@ -162,14 +173,53 @@ def add_part(table: report.Section, figures: dict[str, Any], part: str, tool: st
         "mean_s": 1e-6 * statistics.mean(ours),
         "p99_s": 1e-6 * quantile(ours, 0.99),
         "distance_s": 1e-6 * statistics.mean(asked["Riffler", "signed distance"]),
+        "away_s": 1e-6 * figures["away_us"],
     }
     if theirs := asked.get((FCL, "all contacts")):
         row |= {"fcl_s": 1e-6 * statistics.mean(theirs), "fcl_p99_s": 1e-6 * quantile(theirs, 0.99)}
         row |= {"mean_ratio": row["mean_s"] / row["fcl_s"], "p99_ratio": row["p99_s"] / row["fcl_p99_s"]}
+    if theirs := asked.get((COAL, "all contacts")):
+        row["coal_mean_ratio"] = row["mean_s"] / (1e-6 * statistics.mean(theirs))
+        row["coal_p99_ratio"] = row["p99_s"] / (1e-6 * quantile(theirs, 0.99))
     table.row(
         part=part, tool=tool, triangles=figures["triangles"], touching=figures["colliding"],
         in_doubt=figures["in_doubt"], **row,
     )  # fmt: skip
+
+
+def part_budgets(out: Report, settings: Settings, progress: Any) -> None:
+    """Budgets of a ball on the same parts."""
+    table = out.section(
+        "part-budgets",
+        "Queries with a time budget on these parts",
+        Column("part", "part"),
+        Column("budget", "budget_s", report.micro),
+        Column("missed depth, mean mm", "missed_mean_mm", report.mm),
+        Column("largest mm", "missed_max_mm", report.mm),
+        Column("its bound, mean mm", "bound_mean_mm", report.mm),
+        Column("largest mm", "bound_max_mm", report.mm),
+        Column("bound violated", "violated"),
+    )
+    poses = 20 if settings.quick else 500
+    named = [*core.contact_part_names(), *map(str, models(settings))]
+    for done, part in enumerate(named):
+        progress(done / len(named))
+        name = part.rpartition("/")[2].removesuffix(".stl")
+        runs = [json.loads(core.contact_budgets(1, "plain", poses, list(PART_BUDGETS), part))["budgets"]
+                for _ in range(3)]  # fmt: skip
+        for k, budget in enumerate(PART_BUDGETS):
+            missed, bound = (np.array([run[k][key] for run in runs]) for key in ("missed_mm", "bound_mm"))
+            violated = int(np.sum((missed > bound + ROUNDING) | (missed < -ROUNDING)))
+            missed, bound = np.median(missed, axis=0).clip(0), np.median(bound, axis=0)
+            table.row(
+                part=name, budget_s=budget, missed_mean_mm=missed.mean(), missed_max_mm=missed.max(),
+                bound_mean_mm=bound.mean(), bound_max_mm=bound.max(), violated=violated,
+            )  # fmt: skip
+            out.check(violated == 0, f"{name}, {1e6 * budget:g} µs: the bound was violated {violated} times")
+    table.notes.append(
+        f"{poses} poses of a ball R3 × 30 as above. The median of three queries counts, since a budget is real time; "
+        "violations are counted in all three."
+    )
 
 
 # ---- budgets

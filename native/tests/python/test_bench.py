@@ -291,7 +291,10 @@ def test_contact_is_measured_judged_and_compared(quick):
     assert all(row["violated"] == 0 for row in rows(quick, "col", "budgets"))
     parts = rows(quick, "col", "parts")
     assert {row["part"] for row in parts} >= {"bore", "wall", "box", "prism", "needles"}
-    assert all(row["in_doubt"] < 1 and row["mean_s"] > 0 for row in parts)
+    assert all(row["in_doubt"] < 1 and row["mean_s"] > 0 and row["away_s"] > 0 for row in parts)
+    budgets = rows(quick, "col", "part-budgets")
+    assert {row["part"] for row in budgets} == {row["part"] for row in parts}
+    assert all(row["violated"] == 0 and row["missed_max_mm"] <= row["bound_max_mm"] + 1e-9 for row in budgets)
     steps = rows(quick, "col", "slide")
     assert [round(row["step_mm"], 3) for row in steps] == [0.4, 0.2]
     assert max(steps[0]["reference_z_N"]) > 0 and max(steps[0]["reference_x_N"]) > 0
