@@ -211,7 +211,7 @@ def test_shape_keys_disappear_with_their_vertices():
 
 
 def test_shape_keys_are_taken_over_as_edits():
-    ob = bpy.data.objects[sculpting.sculpt()]
+    ob = bpy.data.objects[sculpting.sculpt(pitch=0.5)]
     volume = common.content(ob).volume.volume
     common.select(ob)
     ob.shape_key_add(name="Basis")

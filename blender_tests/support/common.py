@@ -55,7 +55,7 @@ def scale(mm_per_unit):
     bpy.context.scene.unit_settings.scale_length = mm_per_unit / 1000
 
 
-def stock(size=(40, 30, 20), pitch=0.5, directions="z", **more):
+def stock(size=(40, 30, 20), pitch=1.0, directions="z", **more):
     bpy.ops.riffler.new_stock(source="BLOCK", size=size, pitch=pitch, directions=directions, **more)
     return bpy.context.object
 

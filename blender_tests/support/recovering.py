@@ -26,7 +26,7 @@ if __name__ == "__main__":
 import riffler
 
 BALL = riffler.Tool.ball(6, 30)
-SIZE = (60, 60, 20)
+SIZE, PITCH = (60, 60, 20), 0.8
 ROWS = 5  # rows per carve
 TOP = 14.0  # mm; of the stock of "shapes"
 TOOL = json.dumps(BALL.to_dict())
@@ -56,8 +56,8 @@ def expected(rows, mode="remove"):
 
 def both(rows, mode):
     """And the mask."""
-    volume = riffler.Volume.block((0, 0, 0), SIZE, 0.5, "xyz")
-    mask = riffler.Volume.empty((0, 0, 0), SIZE, 0.5, "xyz")
+    volume = riffler.Volume.block((0, 0, 0), SIZE, PITCH, "xyz")
+    mask = riffler.Volume.empty((0, 0, 0), SIZE, PITCH, "xyz")
     for k, before in enumerate(MODES):
         if before == "mask":
             mask.carve(BALL, lane(k), mode="add")
@@ -173,7 +173,7 @@ def shapes(run):
 def begun(path):
     """A live sculpt, in a file of that path."""
     common.scale(1)
-    name = common.stock(size=SIZE, pitch=0.5, directions="xyz").name
+    name = common.stock(size=SIZE, pitch=PITCH, directions="xyz").name
     if path:
         bpy.ops.wm.save_as_mainfile(filepath=path)
     run = common.part("sculpt.live_registry").begin(bpy.context, bpy.data.objects[name])

@@ -18,7 +18,7 @@ def scene_file():
     """A sculpt with a cut, a curve, an object with a surface, in a file that is opened for each case; a recording."""
     path, recording = common.out("refusals.blend"), common.out("refusals.rjournal")
     common.scale(1)
-    sculpt = common.stock(pitch=1.0, directions="xyz")
+    sculpt = common.stock(pitch=2.0, directions="xyz")
     sculpt.name = "Sculpt"
     line = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
     common.select(sculpt)
@@ -46,7 +46,7 @@ CHANGE = {
     "pen_sculpt": lambda: bpy.ops.riffler.pen_sculpt(device="simulated", seconds=0.05, gap=500.0) and {"FINISHED"},
     "cut_curve": lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=1.0),
     "cut_recording": lambda: bpy.ops.riffler.cut_recording(filepath=common.out("refusals.rjournal")),
-    "resample": lambda: bpy.ops.riffler.resample(pitch=2.0),
+    "resample": lambda: bpy.ops.riffler.resample(pitch=3.0),
     "room": lambda: bpy.ops.riffler.room(room=2.0),
     "mask_invert": bpy.ops.riffler.mask_invert,
     "to_mesh": bpy.ops.riffler.to_mesh,
@@ -64,9 +64,9 @@ RUN = {
 OF_CUTS = {"export_nc", "export_recording", *RUN}  # which edits of the mesh would delete
 OF_SCULPTS = CHANGE | READ | RUN
 OF_OBJECTS = {
-    "new_stock": lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=1.0, directions="z"),
+    "new_stock": lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=2.0, directions="z"),
     "plan_part": bpy.ops.riffler.plan_part,
-    "make_sculpt": lambda: bpy.ops.riffler.make_sculpt(pitch=1.0),
+    "make_sculpt": lambda: bpy.ops.riffler.make_sculpt(pitch=2.0),
 }
 
 

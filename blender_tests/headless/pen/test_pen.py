@@ -45,7 +45,7 @@ def test_a_stroke_with_the_simulated_pen_is_in_volume_mesh_recording_and_cuts():
     assert riffler.Session.replay(path).to_bytes() == content.volume.to_bytes()
     strokes = riffler.Journal.load(path).strokes
     assert sum(c.moves for c in content.cuts) == sum((np.diff(s.poses, axis=0) != 0).any(axis=1).sum() for s in strokes)
-    again = riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z")
+    again = riffler.Volume.block((0, 0, 0), sculpting.SIZE, sculpting.PITCH, "z")
     for cut in content.cuts:
         again.carve(riffler.Tool.from_dict(cut.tool), cut.poses)
     assert again.to_bytes() == riffler.Session.replay(path).to_bytes()

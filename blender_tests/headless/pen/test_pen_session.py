@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import riffler
 
-from support import common, spacemouse_run
+from support import common, sculpting, spacemouse_run
 from support.device_sessions import (
     FAST,
     NAME,
@@ -173,7 +173,7 @@ def test_a_failing_device_ends_the_session_and_finished_strokes_stay():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     first = hand.stroke(10)
-    work().volume.subtract(riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z"))  # an error elsewhere
+    work().volume.subtract(riffler.Volume.block((0, 0, 0), sculpting.SIZE, sculpting.PITCH, "z"))  # an error elsewhere
     try:
         hand.session.look()
     except RuntimeError as error:

@@ -37,10 +37,10 @@ def stroke(ob, *pixels, pressures=(), **more):
     return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, stroke=text, tool=common.BALL, **more)
 
 
-def stock():
+def stock(pitch=0.5):
     """A block of 40 × 30 × 8 with a groove, and room above."""
     common.scale(1)
-    ob = common.stock(pitch=0.5, directions="xyz")
+    ob = common.stock(pitch=pitch, directions="xyz")
     settings = bpy.context.scene.riffler.sculpt
     settings.depth, settings.strength, settings.falloff, settings.pressure = 0.6, 0.5, "SMOOTH", "DEPTH"
     settings.mirror, settings.radial, settings.axis, settings.string = set(), 1, "NORMAL", 0.0
@@ -58,7 +58,7 @@ def run_of(ob):
 
 
 def test_every_brush_makes_a_stroke_that_undo_redo_and_the_journal_repeat_to_the_byte():
-    name = stock().name
+    name = stock(pitch=1.0).name
     for mode in common.fewer(BRUSHES):
         before = run_of(name).volume.to_bytes()
         assert stroke(name, (-60, 0), (-20, 10), (30, 25), (60, 30), mode=mode) == {"FINISHED"}, mode

@@ -29,7 +29,7 @@ class close_to(float):
 
 
 def test_chunks_show_the_volume_and_only_dirty_ones_move():
-    name = sculpt()
+    name = sculpt(pitch=0.5)  # 32 chunks
     run = work(name)
     is_shown(name)
     assert common.part("sculpt.chunks").is_hidden(bpy.data.objects[name])
@@ -79,7 +79,7 @@ def test_seams_of_added_material_are_sharp_all_along():
 
 def test_chunks_are_smooth_from_the_start_and_have_the_normals_of_the_whole():
     for detail in ("NEEDED", "ALL"):
-        name = sculpt()
+        name = sculpt(pitch=0.5)
         bpy.data.objects[name].data.riffler.detail = detail
         run = work(name)
         for k in (None, 1, 7, 14):

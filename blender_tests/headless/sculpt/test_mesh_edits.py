@@ -10,11 +10,11 @@ from support import common
 LEFT_OUT = "without the edits"
 
 
-def ball():
+def ball(pitch=1.0):
     """A sphere of radius 20 as a sculpt, with all triangles, as Blender's own tools need them."""
     common.scale(1)
     bpy.ops.mesh.primitive_uv_sphere_add(radius=20, segments=64, ring_count=32)
-    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=pitch, directions="xyz")
     bpy.ops.riffler.detail(detail="ALL")
     return bpy.context.object
 
@@ -29,7 +29,7 @@ def pull(ob, centre, by=3.0, radius=8.0):
 
 
 def test_every_local_edit_is_detected():
-    ob, sculpts = ball(), common.part("sculpt.sculpts")
+    ob, sculpts = ball(pitch=0.5), common.part("sculpt.sculpts")
     whole, missed = common.coordinates(ob.data), 0
     assert not sculpts.changed(ob.data)
     places = np.random.default_rng(5).normal(size=(40, 3))
@@ -45,7 +45,7 @@ def test_every_local_edit_is_detected():
 def local_pull():
     """A sculpt that was edited where the cheap check misses it."""
     ob, sculpts = ball(), common.part("sculpt.sculpts")
-    pull(ob, (12.0, 9.0, 13.0))
+    pull(ob, (-12.0, 9.0, 13.0))
     assert sculpts.changed(ob.data) and not sculpts.edited(ob.data)
     return ob
 
@@ -57,7 +57,7 @@ def test_every_change_of_the_sculpt_asks_first_what_becomes_of_the_edits():
     line = common.curve("Line", [(-30, 0, 18), (30, 0, 18)], mm_per_unit=1.0)
     calls = {
         "cut": lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=common.BALL),
-        "pitch": lambda: bpy.ops.riffler.resample(pitch=1.0),
+        "pitch": lambda: bpy.ops.riffler.resample(pitch=2.0),
         "crop": lambda: bpy.ops.riffler.crop(point=(0, 0, 15), normal=(0, 0, 1)),
         "mask": lambda: bpy.ops.riffler.mask_invert(),
         "units": lambda: bpy.ops.riffler.millimetres(),
@@ -82,7 +82,7 @@ def test_the_panel_notices_every_edit():
     bpy.ops.riffler.rebuild()
     bpy.context.view_layer.update()
     assert not edits.noticed(ob)
-    pull(ob, (12.0, 9.0, 13.0), by=0.01)
+    pull(ob, (-12.0, 9.0, 13.0), by=0.01)
     bpy.context.view_layer.update()
     assert edits.noticed(ob) and not common.part("sculpt.sculpts").edited(ob.data)
 
@@ -144,7 +144,7 @@ def test_a_file_of_an_older_add_on_has_no_checksum_to_go_by():
     bpy.ops.wm.open_mainfile(filepath=path)
     ob = bpy.context.object
     assert ob.data.riffler.shown_crc and not sculpts.changed(ob.data)
-    pull(ob, (12.0, 9.0, 13.0))
+    pull(ob, (-12.0, 9.0, 13.0))
     assert sculpts.changed(ob.data)
     Path(path).unlink()
 
@@ -182,7 +182,7 @@ def test_take_edits_keeps_the_mask_and_names_the_lost_cuts():
 def test_strokes_are_mirrored_where_they_were_after_one_side_has_become_longer():
     from support import sculpting
 
-    ob = sculpting.sculpt(size=(40, 30, 20)) and bpy.context.object
+    ob = sculpting.sculpt(size=(40, 30, 20), pitch=0.5) and bpy.context.object
     mirror = common.part("sculpt.pure.symmetry").maps("X")
 
     def mirrored(y):

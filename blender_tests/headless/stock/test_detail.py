@@ -28,7 +28,7 @@ def all_triangles(name):
 
 def test_strokes_show_a_tenth_of_the_triangles_one_click_shows_all_and_undo_reverts_it():
     needs_normals()
-    name = sculpt()
+    name = sculpt(pitch=0.5)
     mesh = bpy.data.objects[name].data
     run = work(name)
     assert chunk_triangles(name) < 0.05 * all_triangles(name)
