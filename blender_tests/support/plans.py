@@ -40,7 +40,7 @@ def ring(radius=20.0, count=90):
     centres = radius * way + [0, 0, 3]
     contacts = np.stack([centres - 3 * way, centres - [0, 0, 3]], axis=1)
     normals = np.stack([way, np.tile(UP, (count, 1))], axis=1)
-    return riffler.plan.PencilPath(3.0, centres, contacts, normals, True)
+    return riffler.plan.PencilPath(3.0, centres, contacts, normals, closed=True)
 
 
 def paths():
