@@ -146,7 +146,7 @@ def test_an_undo_to_before_the_session_ends_it_and_to_an_older_stroke_of_the_poi
 
 
 def test_masked_material_stays_to_the_byte_also_in_the_journal():
-    for directions in ("z", "xyz"):
+    for directions in common.fewer(("xyz", "z")):
         ob = sculpt(directions)
         run = live().begin(bpy.context, ob)
         run.begin_stroke()
@@ -177,7 +177,7 @@ def test_masked_material_stays_to_the_byte_also_in_the_journal():
 
 def test_material_is_added_stroke_by_stroke_undone_and_replayed_by_the_journal():
     core = common.part("sculpt.pure.journal")
-    for directions in ("z", "xyz"):
+    for directions in common.fewer(("xyz", "z")):
         ob = lowered(directions)
         before = work().volume.copy()
         hand = Hand(ob, mode="add")

@@ -25,6 +25,7 @@ from support.device_sessions import (
 from support.sculpting import is_shown, live, matches_its_volume, nothing_is_left
 
 
+@common.core_bound
 def test_a_session_that_cuts_nothing_changes_nothing():
     ob = sculpt()
     key, before = common.part("sculpt.sculpt_store").identity(ob.data), now()
@@ -38,6 +39,7 @@ def test_a_session_that_cuts_nothing_changes_nothing():
     nothing_is_left()
 
 
+@common.core_bound
 def test_a_session_reports_that_it_makes_no_copies():
     sculpt()
     settings = bpy.context.scene.riffler.sculpt
@@ -47,6 +49,7 @@ def test_a_session_reports_that_it_makes_no_copies():
     no_session()
 
 
+@common.core_bound
 def test_a_recording_is_a_device_and_ends_by_itself():
     sculpt()
     x = np.linspace(0, 1, 500)
@@ -90,6 +93,7 @@ def test_the_shown_chunks_follow_and_may_be_removed():
     nothing_is_left()
 
 
+@common.core_bound
 def test_the_force_on_the_tool_is_the_materials_and_against_its_motion():
     """Removal force: the constant times the volume removed per second, against the motion (docs/methods.md)."""
     sculpt()
@@ -227,6 +231,7 @@ def looked(session, done, seconds=20.0):
         time.sleep(0.02)
 
 
+@common.core_bound
 def test_a_pen_that_has_lost_counts_gives_force_again_once_it_is_homed_and_its_trip_cleared():
     """Lost counts leave the pose in doubt, so neither of the two buttons is enough alone."""
     ob = sculpt()
@@ -259,6 +264,7 @@ def test_a_pen_that_has_lost_counts_gives_force_again_once_it_is_homed_and_its_t
     nothing_is_left()
 
 
+@common.core_bound
 def test_devices_without_a_home_are_not_homed_and_session_buttons_need_a_session():
     hand = Hand(sculpt())
     common.refused(bpy.ops.riffler.pen_home, "mouse has nothing to home")
@@ -362,6 +368,7 @@ def turned_view(angle):
     return views.facing()
 
 
+@common.core_bound
 def test_a_hand_that_touches_the_stock_stays_on_it_and_cuts_nothing():
     ob = sculpt("xyz")
     before = common.content(ob).volume.volume

@@ -217,6 +217,7 @@ def test_another_file_ends_the_session():
     assert not run.running and hand.session.ended
 
 
+@common.core_bound
 def test_the_simulated_pen_turns_the_tool_for_some_seconds():
     ob = scene()
     for seconds in (4.0, 8.0, 16.0):

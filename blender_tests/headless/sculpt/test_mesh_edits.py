@@ -1,5 +1,6 @@
 """Edits of a sculpt's mesh by Blender's own tools are detected by all operators that use the sculpt, and reported."""
 
+from itertools import product
 from pathlib import Path
 
 import bpy
@@ -63,16 +64,17 @@ def test_every_change_of_the_sculpt_asks_first_what_becomes_of_the_edits():
         "units": lambda: bpy.ops.riffler.millimetres(),
         "stroke": lambda: bpy.ops.riffler.stroke(stroke=STROKE),
     }
-    for name, call in calls.items():
-        for remedy in (bpy.ops.riffler.take_edits, bpy.ops.riffler.rebuild):
-            ob = local_pull()
-            common.push("pull")
-            kept, before = common.coordinates(ob.data), common.shape(common.content(ob).volume)
-            common.refused(call, ob.name, "Apply Mesh Edits", "Rebuild Mesh")
-            assert np.array_equal(common.coordinates(ob.data), kept), name
-            assert common.same(common.shape(common.content(ob).volume), before), name
-            assert remedy() == {"FINISHED"} and call() == {"FINISHED"}, name
-            sculpting.live().end_all()
+    for (name, call), remedy in common.fewer(
+        product(calls.items(), (bpy.ops.riffler.take_edits, bpy.ops.riffler.rebuild))
+    ):
+        ob = local_pull()
+        common.push("pull")
+        kept, before = common.coordinates(ob.data), common.shape(common.content(ob).volume)
+        common.refused(call, ob.name, "Apply Mesh Edits", "Rebuild Mesh")
+        assert np.array_equal(common.coordinates(ob.data), kept), name
+        assert common.same(common.shape(common.content(ob).volume), before), name
+        assert remedy() == {"FINISHED"} and call() == {"FINISHED"}, name
+        sculpting.live().end_all()
 
 
 def test_the_panel_notices_every_edit():
