@@ -6304,11 +6304,6 @@ class OrientFrame:
         (n,) 1 where the tool did not move, because its depth in the obstacles was not found in time.
         """
     @property
-    def held(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n,) 1 where the tool waited because its depth was not found in time.
-        """
-    @property
     def missed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) 1 where a step was missed and the last force was held.
