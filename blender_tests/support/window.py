@@ -51,7 +51,7 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
         }
         screen = ["xvfb-run", "-a", "-n", str(display), "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
         text = script.read_text()
-        if "\nPIXELS = False\n" in text and not bench.measure:
+        if "\nPIXELS = False\n" in text and not (bench.measure or bench.smooth):
             variables["LP_NO_RAST"] = "1"  # windowed/pixels.py
         real = "\nREAL_EVENTS = True\n" in text
         # A script that cannot be loaded ends Blender, which otherwise waits for the time limit.

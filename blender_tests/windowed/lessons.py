@@ -78,19 +78,24 @@ def plain_window():
 
 
 def picture(screen, name, box=None):
-    """<out>/tutorials/<name>.png, of the whole window or of a box (left, below, right, above) of window pixels; smooth
-    for the pages (`run.py --smooth`)."""
+    """Steps: <out>/tutorials/<name>.png for the pages, of the whole window or of a box (left, below, right, above) of
+    window pixels, if run.py has --smooth. Otherwise the window is drawn without filling it: nothing compares it."""
+    whole = 0, 0, screen.window.width, screen.window.height
+    left, below, right, above = (int(x) for x in box or whole)
+    assert 0 <= left < right <= whole[2] and 0 <= below < above <= whole[3], (box, whole)
+    if not harness.job.get("smooth"):
+        for area in screen.window.screen.areas:
+            area.tag_redraw()
+        yield 0.2
+        return
     folder = screen.out / "tutorials"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
-    screen.draw_smoothly(bool(harness.job.get("smooth")))
+    screen.draw_smoothly(True)
     yield 0.4  # what still moves comes to rest before it is filled
     yield from screen.pixels.fill_again(screen.window)
-    command = ["import", "-window", "root"]
-    if box is not None:
-        left, below, right, above = (int(x) for x in box)
-        crop = f"{right - left}x{above - below}+{left}+{screen.window.height - above}"
-        command += ["-crop", crop, "+repage"]
+    crop = f"{right - left}x{above - below}+{left}+{whole[3] - above}"
+    command = ["import", "-window", "root", "-crop", crop, "+repage"]
     subprocess.run([*command, "-strip", "+dither", "-colors", str(COLOURS), f"PNG8:{path}"], check=True)
     screen.draw_smoothly(False)
     screen.pixels.kept = False

@@ -9,6 +9,7 @@ import numpy as np
 from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
+PIXELS = False
 SIZE = (60.0, 60.0, 20.0)
 SEEN = 0.12  # N: an arrow that is longer than its head
 

@@ -8,6 +8,7 @@ import numpy as np
 from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
+PIXELS = False
 SIZE = (90.0, 34.0, 10.0)
 DEPTH = 0.6
 

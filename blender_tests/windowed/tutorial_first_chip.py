@@ -8,6 +8,7 @@ import numpy as np
 from support import common, harness, report
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
+PIXELS = False
 HALF = (20.0, 20.0, 27.0)  # of the egg, mm
 
 

@@ -12,6 +12,7 @@ from support import common, harness
 HERE = Path(__file__)
 lessons = harness.load(HERE.with_name("lessons.py"))
 gizmo = harness.load(HERE.with_name("window_gizmo.py"))
+PIXELS = False
 SIZE = 30.0  # mm, longest side of the head
 FLAT, BALL = "Flat 6 mm", "Ball 3 mm"
 

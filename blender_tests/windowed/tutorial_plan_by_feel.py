@@ -9,6 +9,7 @@ import numpy as np
 from support import harness
 
 pencil = harness.load(Path(__file__).with_name("tutorial_pencil_cut.py"))
+PIXELS = False
 lessons, gizmo, line = pencil.lessons, pencil.gizmo, pencil.line
 FAR, CLAMP = 0.8, 0.13  # places of the keys, shares of the path
 # Inclination and tilt, degrees: clear of the clamp on the whole path, one that meets it further along, and one into it.

@@ -9,6 +9,7 @@ import numpy as np
 from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
+PIXELS = False
 SIDE, DEEP, WIDTH, DEPTH = 70.0, 12.0, 60.0, 3.0  # block and relief, mm
 
 
