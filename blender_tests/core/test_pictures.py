@@ -78,19 +78,33 @@ def test_a_grid_survives_as_text():
         assert np.abs(pictures.from_text(pictures.to_text(grid)) - grid).max() <= 0.5 / 255
 
 
+def colours():
+    return np.random.default_rng(7).integers(0, 256, (95, 140, 3), dtype=np.uint8)
+
+
 @pytest.mark.skipif(not shutil.which("convert"), reason="no ImageMagick here")
-def test_a_file_is_judged_by_the_reference_of_its_name_and_version(tmp_path, monkeypatch):
+def test_imagemagick_reads_the_same_pixels_and_luminance(tmp_path):
+    pictures.write(tmp_path / "a.png", colours())
+
+    def read(*words):
+        command = ["convert", str(tmp_path / "a.png"), *words]
+        return np.frombuffer(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout, np.uint8)
+
+    assert np.array_equal(read("-depth", "8", "rgb:-").reshape(colours().shape), colours())
+    gray = read("-colorspace", "Gray", "-depth", "8", "gray:-").reshape(95, 140)
+    assert np.abs(pictures.gray(colours()) - gray / 255).max() <= 1.001 / 255
+
+
+def test_a_picture_is_judged_by_the_reference_of_its_name_and_version(tmp_path, monkeypatch):
     monkeypatch.setattr(pictures, "REFERENCES", tmp_path / "references")
 
-    def write(image):
-        data = b"P5 1400 950 255\n" + np.rint(image * 255).astype(np.uint8).tobytes()
-        subprocess.run(["convert", "pgm:-", str(tmp_path / "a.png")], input=data, check=True)
+    def check(version, **change):
+        image = np.repeat(np.rint(window(**change) * 255).astype(np.uint8)[..., None], 3, axis=2)
+        return pictures.check(image, tmp_path, "a", version, AREAS)
 
-    write(window())
-    assert pictures.check(tmp_path, "a", "4.3", AREAS) is None
+    assert check("4.3") is None
     monkeypatch.setattr("sys.argv", ["pictures.py", str(tmp_path / "pictures-4.3.json"), "a"])
     pictures.main()
-    assert pictures.check(tmp_path, "a", "4.3", AREAS) == ""
-    assert pictures.check(tmp_path, "a", "5.2", AREAS) is None
-    write(window(panel=False))
-    assert "PROPERTIES" in pictures.check(tmp_path, "a", "4.3", AREAS)
+    assert check("4.3") == ""
+    assert check("5.2") is None
+    assert "PROPERTIES" in check("4.3", panel=False)

@@ -99,16 +99,18 @@ class Screen:
         self.pixels.kept = False
 
     def take(self, name):
-        """Writes what the display shows. From outside: Blender's own operator gives a black one from 4.3 on."""
+        """Writes what the display shows, and returns it. From outside: Blender's own operator gives a black one from
+        4.3 on."""
         path = self.out / self.script / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run(["import", "-window", "root", str(path)], check=True)
-        assert path.stat().st_size > 20_000, f"{path} is all but empty"
+        image = pictures.grab()
+        pictures.write(path, image)
+        assert path.stat().st_size > 40_000, f"{path} is all but empty"
+        return image
 
     def _shoot(self, name, vary):
         """Returns the result of pictures.check."""
-        self.take(name)
-        return pictures.check(self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
+        return pictures.check(self.take(name), self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
 
     # A Blender that takes simulated events takes no others: a script sets REAL_EVENTS = True to avoid them, and all
     # events below then come from outside, by xdotool, as from a mouse and a keyboard.
