@@ -25,6 +25,8 @@ import bpy  # noqa: E402 (paths first)
 
 from support.report import processor_time, say  # noqa: E402
 
+UNPACKED = 10**9  # s since 1970: what a test replaces later is newer
+
 
 class Skip(Exception):  # noqa: N818 (it is no error)
     """Raised by a test that cannot run here; its text is the reason."""
@@ -46,15 +48,31 @@ def install():
         name = "riffler_addon"
         if mode == "legacy":
             bpy.ops.preferences.addon_install(filepath=job["zip"], overwrite=True)
-        else:
-            folder = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True))
-            if not (folder / name).exists():
-                (folder / name).symlink_to(Path(job["repo"]) / "addon", target_is_directory=True)
+        folder = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True)) / name
+        if mode == "source" and not folder.exists():
+            folder.symlink_to(Path(job["repo"]) / "addon", target_is_directory=True)
+        share_compiled(folder)
         bpy.ops.preferences.addon_enable(module=name)
     # The operators return FINISHED even if nothing was installed.
     if name not in bpy.context.preferences.addons:
         raise RuntimeError(f"{name} was not enabled")
     return name
+
+
+def share_compiled(folder):
+    """Lets the add-on's modules be read compiled from the common folder (environments.bytecode), if there is one. Each
+    process installs the add-on under a path of its own, where none of them would be found."""
+    if not sys.pycache_prefix:
+        return
+    place = Path(sys.pycache_prefix, *folder.parts[1:])  # where Python looks: importlib.util.cache_from_source
+    if not place.exists():
+        common = Path(sys.pycache_prefix, f"riffler_addon-{job['mode']}")
+        common.mkdir(exist_ok=True)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.symlink_to(common, target_is_directory=True)
+    if not folder.is_symlink():  # unpacked: a source's time tells an outdated module, and was that of unpacking
+        for path in folder.rglob("*.py"):
+            os.utime(path, (UNPACKED, UNPACKED))
 
 
 class OnlyInstalled:
