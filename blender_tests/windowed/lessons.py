@@ -290,8 +290,9 @@ def closed(path, expected, within):
     return surface
 
 
-def block(screen, size, pitch=0.25):
-    """New Stock with its zero in the middle of its top."""
+def block(screen, size):
+    """New Stock with its zero in the middle of its top: fine for the pages' pictures, otherwise coarse."""
+    pitch = 0.25 if harness.job.get("smooth") else 0.5
     with screen.override():
         bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, source="BLOCK", size=size, origin="TOP", pitch=pitch)
     screen.area.spaces.active.region_3d.view_distance *= 1.25
