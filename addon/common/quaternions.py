@@ -51,6 +51,8 @@ def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarra
     is `before` (4,), by default the identity, turned likewise. Neighbours have the same sign."""
     before = np.array([1.0, 0, 0, 0]) if before is None else unit(np.asarray(before, float))
     first = multiply(between(axes_of(before), axes[0]), before)
+    if len(axes) == 1:
+        return unit(first)[None]
     q = np.vstack([first, between(axes[:-1], axes[1:])])
     step = 1
     while step < len(q):  # products of all turns so far, by doubling: Hillis and Steele, CACM 29 (1986) 1170
