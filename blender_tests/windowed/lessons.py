@@ -17,6 +17,7 @@ from support import common, harness, report
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
+PAGES = bool(harness.job.get("smooth"))  # pictures are for the pages
 COLOURS = 128  # of a picture's palette: at most 250 kB for a whole window
 PIE = {"riffler.carve": (-1, 0), "riffler.add": (1, 0), "riffler.smooth": (0, -1), "riffler.mask": (0, 1)}
 STEP = 12  # pixels between two positions on a panel's buttons: less than a button's height
@@ -83,7 +84,7 @@ def picture(screen, name, box=None):
     whole = 0, 0, screen.window.width, screen.window.height
     left, below, right, above = (int(x) for x in box or whole)
     assert 0 <= left < right <= whole[2] and 0 <= below < above <= whole[3], (box, whole)
-    if not harness.job.get("smooth"):
+    if not PAGES:
         for area in screen.window.screen.areas:
             area.tag_redraw()
         yield 0.2
@@ -292,7 +293,7 @@ def closed(path, expected, within):
 
 def block(screen, size):
     """New Stock with its zero in the middle of its top: fine for the pages' pictures, otherwise coarse."""
-    pitch = 0.25 if harness.job.get("smooth") else 0.5
+    pitch = 0.25 if PAGES else 0.5
     with screen.override():
         bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, source="BLOCK", size=size, origin="TOP", pitch=pitch)
     screen.area.spaces.active.region_3d.view_distance *= 1.25

@@ -74,7 +74,7 @@ def listed(screen):
             assert bpy.ops.riffler.machining_add(kind=kind) == {"FINISHED"}
             assert bpy.ops.riffler.machining_tool(name=name) == {"FINISHED"}
     rough, finish = settings.rows
-    rough.stepdown, finish.cusp, finish.tolerance = 3.0, 0.03, 0.01
+    rough.stepdown, finish.cusp, finish.tolerance = 3.0, 0.03 if lessons.PAGES else 0.1, 0.01
     finish.slope_to = np.radians(85)
     screen.to_view()
     yield 0.5

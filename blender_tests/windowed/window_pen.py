@@ -65,7 +65,7 @@ def prepare(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_pen")
     yield from cut.open_tab(screen)
-    cut.stock(screen, 0.25 if harness.job.get("smooth") else 0.5)  # fine for the page's picture
+    cut.stock(screen, 0.25 if lessons.PAGES else 0.5)  # fine for the page's picture
     bpy.context.scene.riffler.sculpt.limit = 0.2
     with screen.override():
         bpy.ops.ed.undo_push(message="Stock")

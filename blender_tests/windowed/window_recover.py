@@ -97,7 +97,7 @@ def saved_meanwhile(screen, folder):
         states.append(stroke(NAME, k, ("remove", "add")[k % 2], may_be_none=True))
         k += 1
         yield lambda: running().persistence.packed == running().token  # at the stroke's end, or at rest
-        yield 0.5
+        yield 2.0
     assert running() is not None
     path = common.out("autosaved.blend")
     shutil.copy(files[0], path)
