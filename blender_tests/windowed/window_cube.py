@@ -14,6 +14,7 @@ from support import common, harness
 
 stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
+PIXELS = False
 UNIT = 50.0  # mm in a unit of the scene, once the cube is a sculpt of 100 mm
 
 
