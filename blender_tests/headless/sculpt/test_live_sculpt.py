@@ -322,6 +322,24 @@ def test_undo_fills_no_chunk_again():
     is_shown(name)
 
 
+def test_chunks_that_undo_has_not_restored_are_filled_again():
+    name = sculpt()
+    for k, stale in enumerate((slice(1), slice(-1, None), slice(None))):
+        stroke(name, k)
+        run = work(name)
+        found = common.part("sculpt.chunks").collection_of(bpy.data.objects[name].riffler.mark).objects
+        shown = {ob["riffler_chunk"]: ob.data for ob in found if "riffler_chunk" in ob and len(ob.data.polygons)}
+        assert len(shown) > 2
+        blocks = sorted(shown)[stale]
+        for block in blocks:
+            shown[block].clear_geometry()
+            shown[block]["riffler_filling"] = 0
+        run.stages.take_counts()
+        assert run.follow()
+        assert run.stages.take_counts()["chunks"] == len(blocks)
+        is_shown(name)
+
+
 def test_undo_past_the_beginning_ends_the_work_and_redo_continues_it():
     name = sculpt()
     before = common.content(bpy.data.objects[name]).volume.to_bytes()
