@@ -139,21 +139,25 @@ void LowerSide::meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) co
     return;
   }
   if (stop.touches && plane->tip < stop.tip) return;
-  // Towards the plane's contact, the tip on the plane rises: it is highest on the edges that face the contact.
+  // Towards the plane's contact, the tip on the plane rises: it is highest there, or on the edges that face the
+  // contact.
+  const Vec2& place = plane->place;
   const double turn = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
-  const auto outside = [&](const Vec3& s, const Vec3& t) {
+  bool inside = true;
+  const auto faces = [&](const Vec3& s, const Vec3& t) {
     const Vec2 way(t.x - s.x, t.y - s.y);
-    const double across = way.x * (plane->place.y - s.y) - way.y * (plane->place.x - s.x);
-    return (turn > 0 ? across : -across) <= kSurely * (std::abs(way.x) + std::abs(way.y));
+    const double across = way.x * (place.y - s.y) - way.y * (place.x - s.x), inwards = turn > 0 ? across : -across;
+    inside = inside && inwards >= 0;
+    return inwards <= kSurely * (std::abs(way.x) + std::abs(way.y));
   };
-  const bool ab = outside(a, b), bc = outside(b, c), ca = outside(c, a);
+  const bool ab = faces(a, b), bc = faces(b, c), ca = faces(c, a);
   if (ca || ab) corner(a, stop);
   if (ab || bc) corner(b, stop);
   if (bc || ca) corner(c, stop);
   if (ab) edge(a, b, stop);
   if (bc) edge(b, c, stop);
   if (ca) edge(c, a, stop);
-  facet(a, b, c, stop);
+  if (inside) at({place, a.z + plane->slope.x * (place.x - a.x) + plane->slope.y * (place.y - a.y)}, stop);
 }
 
 }  // namespace riffler::plan
