@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from riffler.command.plot_style import COLOURS, INK, logarithmic
 
-from .plotting import Data, colours, column, pick, rows, target, title, values
+from .plotting import Data, colours, column, fit, pick, rows, target, title, values
 from .report import grouped
 
 
@@ -43,7 +43,7 @@ def col(data: Data) -> Figure:
         axis.set_ylabel("share of poses that take longer")
     title(figure, data, "Contact (COL): time of one pose, 2 000 poses" if not data["quick"] else "Contact (COL)")
     low = 0.18 if shape[0] == 1 else 0.1
-    figure.tight_layout(rect=(0, low, 1, 0.97))
+    fit(figure, low, 0.97)
     labels = axes.flat[0].get_legend_handles_labels()
     figure.legend(*labels, loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.05 if shape[0] == 1 else 0.02))
     return figure
@@ -83,7 +83,7 @@ def budgets(data: Data) -> Figure:
     axes[0, 0].set_ylabel("depth  mm")
     title(figure, data, "Queries with a time budget: time against missed depth and its bound")
     axes[0, -1].legend(loc="lower left", bbox_to_anchor=(0.0, 0.08))
-    figure.tight_layout(rect=(0, 0.03, 1, 0.97))
+    fit(figure, 0.03, 0.97)
     return figure
 
 
@@ -102,5 +102,5 @@ def slide(data: Data) -> Figure:
     axis.set(xlabel="tip beyond the edge  mm", ylabel="force on the tool  N")
     axis.legend()
     title(figure, data, "A ball R3, 0.2 mm deep, slides off a plane over its edge")
-    figure.tight_layout(rect=(0, 0.03, 1, 0.97))
+    fit(figure, 0.03, 0.97)
     return figure

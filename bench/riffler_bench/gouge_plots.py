@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from riffler.command.plot_style import COLOURS, logarithmic
 
-from .plotting import Data, rows, target, title, values
+from .plotting import Data, fit, rows, target, title, values
 
 LEAST = 1e-4  # mm: what is drawn at the bottom of the log axis is nothing, or less
 
@@ -39,6 +39,6 @@ def entries(data: Data) -> Figure:
         axis.set_xlabel("along the paths, one after the other  mm")
     title(figure, data, "Part and vise in cutter, shank or holder, by the independent judge (lowest: nothing, or less)")
     low = 0.35 / figure.get_figheight()
-    figure.tight_layout(rect=(0, low, 1, 0.98))
+    fit(figure, low, 0.98)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.0))
     return figure

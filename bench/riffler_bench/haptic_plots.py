@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from riffler.command.plot_style import COLOURS, INK, MARKS, logarithmic
 
-from .plotting import Data, column, pick, rows, target, title, values
+from .plotting import Data, column, fit, pick, rows, target, title, values
 
 
 def rendered(data: Data) -> Figure | None:
@@ -54,7 +54,7 @@ def rendered(data: Data) -> Figure | None:
     right.margins(0.15)
     right.legend(fontsize=8, loc="upper right")
     title(figure, data, "Whole haptic step: time against pitch, and error of the force against time")
-    figure.tight_layout(rect=(0, 0.03, 1, 0.97))
+    fit(figure, 0.03, 0.97)
     return figure
 
 
@@ -83,5 +83,5 @@ def session(data: Data) -> Figure | None:
     right.set(xlabel="of the run  %", ylabel="memory of the process  MB")
     right.set_ylim(0)
     title(figure, data, "Sculpting with the simulated pen")
-    figure.tight_layout(rect=(0, 0.03, 1, 0.97))
+    fit(figure, 0.03, 0.97)
     return figure

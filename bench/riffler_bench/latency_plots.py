@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from riffler.command.plot_style import COLOURS, INK
 
-from .plotting import Data, rows, title
+from .plotting import Data, fit, rows, title
 
 STAGES = {
     "event_s": "event to the tool",
@@ -37,7 +37,7 @@ def stages(data: Data) -> Figure | None:
         axis.set_title("in a window: event to picture" if window else "without a window, nothing drawn", loc="left")
         axis.set_xlabel("wall time of an event  ms")
     title(figure, data, "An event of a stroke: Riffler against Blender's sculpt mode", f"{data['cores']} cores")
-    figure.tight_layout(rect=(0, 0.13, 1, 0.97))
+    fit(figure, 0.13, 0.97)
     handles = [plt.Rectangle((0, 0), 1, 1, color=colour(key), label=STAGES[key]) for key in STAGES if key in shown]
     figure.legend(handles=handles, loc="lower right", ncols=3 if len(named) == 1 else 5, bbox_to_anchor=(1.0, 0.025))
     return figure

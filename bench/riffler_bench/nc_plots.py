@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from riffler.command.plot_style import logarithmic
 
-from .plotting import Data, colours, column, pick, rows, title, values
+from .plotting import Data, colours, column, fit, pick, rows, title, values
 
 
 def between(data: Data) -> Figure:
@@ -46,7 +46,7 @@ def between(data: Data) -> Figure:
     axes[1, 0].set_ylabel(f"blocks for {table[0]['rows']} rows")
     axes[2, 0].set_ylabel("time to write the file  ms")
     title(figure, data, "What the axes do between blocks: error, blocks and time")
-    figure.tight_layout(rect=(0, 0.04, 1, 0.98))
+    fit(figure, 0.04, 0.98)
     handles = [*axes[0, 0].get_legend_handles_labels()[0], *axes[1, 0].get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from riffler.command.plot_style import COLOURS, INK, TARGET, logarithmic
 
-from .plotting import Data, colours, column, pick, rows, title, values
+from .plotting import Data, colours, column, fit, pick, rows, title, values
 
 CLAY, LIGHT = np.array(to_rgb("#cfc8ba")), np.array([-0.35, -0.5, 0.8])
 EXACT, FOUND = "#2f6690", TARGET
@@ -114,7 +114,7 @@ def tolerance(data: Data) -> Figure:
     left.annotate("this or less", (0.02, FLOOR), xycoords=("axes fraction", "data"), xytext=(0, 3),
                   textcoords="offset points", fontsize=7.5, color=COLOURS[5])  # fmt: skip
     title(figure, data, "Pencil curves: what a tolerance costs and what it gives")
-    figure.tight_layout(rect=(0, 0.07, 1, 0.97))
+    fit(figure, 0.07, 0.97)
     figure.legend(*left.get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure
 

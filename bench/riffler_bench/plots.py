@@ -24,7 +24,7 @@ from . import (
     surface_plots,
     verify_plots,
 )
-from .plotting import Data, colours, column, pick, rows, target, title, values
+from .plotting import Data, colours, column, fit, pick, rows, target, title, values
 
 
 def draw(data: Data, out: Path) -> list[Path]:
@@ -36,7 +36,7 @@ def draw(data: Data, out: Path) -> list[Path]:
             if figure is None:
                 continue
             path = out / f"{name}.png"
-            figure.savefig(path, dpi=120, facecolor="white", bbox_inches="tight")
+            figure.savefig(path, dpi=120, facecolor="white")
             plt.close(figure)
             paths.append(path)
     return paths
@@ -85,7 +85,7 @@ def b5x(data: Data) -> Figure:
         *([Line2D([], [], color=TARGET, linestyle=":", label="target at 0.01, h = 0.25")] if 0.25 in pitches else []),
     ]
     title(figure, data, "Five-axis moves (B5X): time against measured error")
-    figure.tight_layout(rect=(0, 0.05, 1, 0.97))
+    fit(figure, 0.05, 0.97)
     figure.legend(handles=marks, loc="lower right", ncols=len(marks), bbox_to_anchor=(1.0, 0.0))
     return figure
 
@@ -118,7 +118,7 @@ def tolerance(data: Data) -> Figure:
                    color="#777777")  # fmt: skip
     right.legend(loc="upper left", ncols=2)
     title(figure, data, f"Error and time of a tolerance (B5X, h = {table[0]['pitch']:g} mm)")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    fit(figure, 0.02, 0.97)
     return figure
 
 
@@ -157,7 +157,7 @@ def single(data: Data) -> Figure | None:
     right.annotate("allowed", (1, 1), xycoords=("data", "axes fraction"), va="bottom", ha="center", fontsize=8,
                    color=TARGET, xytext=(0, 2), textcoords="offset points")  # fmt: skip
     title(figure, data, f"Single rotations (h = {table[0]['pitch']:g} mm)")
-    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
+    fit(figure, 0.06, 0.97)
     return figure
 
 
@@ -169,7 +169,8 @@ def b200(data: Data) -> Figure:
     table = rows(data, "carve")
     kinds = {"plain": "z", "force": "z, with force", "tri": "tri-dexel"}
     names, pitches = values(table, "cutter"), values(table, "pitch")
-    figure, axes = plt.subplots(1, len(pitches), figsize=(4.2 * len(pitches), 4.6), sharey=True, squeeze=False)
+    width = max(4.2 * len(pitches), 7.6)  # in: the title's
+    figure, axes = plt.subplots(1, len(pitches), figsize=(width, 4.6), sharey=True, squeeze=False)
     for axis, pitch in zip(axes.flat, pitches, strict=True):
         mine = pick(table, pitch=pitch)
         for k, (kind, label) in enumerate(kinds.items()):
@@ -187,7 +188,7 @@ def b200(data: Data) -> Figure:
         axis.margins(y=0.12)
     axes.flat[0].set_ylabel("time ÷ plain capsule loop")
     title(figure, data, "Straight moves (B200): time of one move against the plain capsule loop in the same run")
-    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
+    fit(figure, 0.06, 0.97)
     marks = [
         Line2D([], [], color=TARGET, linestyle=":", label="target for z"),
         *axes.flat[0].get_legend_handles_labels()[0],
@@ -218,7 +219,7 @@ def haptic(data: Data) -> Figure | None:
     logarithmic(right.yaxis)
     figure.legend(*left.get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     title(figure, data, "Haptic step: Ø20 ball, 0.5 mm a step, h = 0.1 mm, force and torque included")
-    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
+    fit(figure, 0.06, 0.97)
     return figure
 
 
@@ -254,7 +255,7 @@ def force(data: Data) -> Figure:
     axes[-1][-1].set_xlabel("length of a step ÷ h")
     axes[0][0].legend(loc="lower right")
     title(figure, data, "Force of one straight stroke at different rates and pitches, unfiltered")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    fit(figure, 0.02, 0.97)
     return figure
 
 
@@ -301,7 +302,7 @@ def pitch(data: Data) -> Figure:
         right.annotate("target: below 100 MB\nin all at 0.15", (0.15, 100), xytext=(-4, 8), textcoords="offset points",
                        fontsize=7.5, color=TARGET, ha="right")  # fmt: skip
     title(figure, data, "Time, memory and the mesh's error against pitch (Ø6 ball)")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    fit(figure, 0.02, 0.97)
     return figure
 
 
@@ -339,7 +340,7 @@ def mesh(data: Data) -> Figure:
     left.set_xticks(h, [f"{x:g}" for x in h])
     left.xaxis.minorticks_off()
     title(figure, data, "B200 to a mesh: error against pitch and against time")
-    figure.tight_layout(rect=(0, 0.1, 1, 0.97))
+    fit(figure, 0.1, 0.97)
     figure.legend(*right.get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure
 

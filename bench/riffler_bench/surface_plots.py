@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 from riffler.command.plot_style import COLOURS, logarithmic
 
-from .plotting import Data, column, rows, target, title
+from .plotting import Data, column, fit, rows, target, title
 
 
 def surfaces(data: Data) -> Figure:
@@ -32,5 +32,5 @@ def surfaces(data: Data) -> Figure:
     axes[0].set_ylabel("processor time of a query, mean  µs")
     axes[0].legend()
     title(figure, data, "A ball on a torus: time and error; labels: tolerance of the triangles, mm")
-    figure.tight_layout(rect=(0, 0, 1, 0.95))
+    fit(figure, 0, 0.95)
     return figure

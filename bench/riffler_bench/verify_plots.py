@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from riffler.command.plot_style import logarithmic
 
-from .plotting import Data, colours, column, pick, rows, title, values
+from .plotting import Data, colours, column, fit, pick, rows, title, values
 from .report import grouped
 
 
@@ -52,7 +52,7 @@ def against_pitch(data: Data) -> Figure:
         axis.set_xticks(ticks, [f"{h:g}" for h in ticks])
         axis.xaxis.minorticks_off()
     title(figure, data, "Verification: error of what is left, time and memory (a ball of 6 mm over waves)")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    fit(figure, 0.02, 0.97)
     return figure
 
 
