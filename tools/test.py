@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import compiler_cache
 import package
 from preset import build_preset, test_preset
-from shell import PYTHON, ROOT, StepError, cores, main, run, say
+from shell import PYTHON, ROOT, StepError, cores, main, run, say, tool_environment
 
 LOGS = ROOT / "build" / "tests"
 HEARTBEAT = 30  # s
@@ -36,10 +36,12 @@ def cpp() -> None:
 
 
 def python() -> None:
-    """Many tests wait for a pen's clock, and many use all cores themselves: two processes a core, within bounds."""
+    """Many tests wait for a pen's clock, and many use all cores themselves: two processes a core, within bounds. They
+    share the tests' bytecode, even where the caller writes none: each would compile all tests again."""
     processes = min(4, 2 * cores())
     options = ["-n", str(processes), "--dist", "loadfile", "--durations=20", "--durations-min=0.5"]
-    run(PYTHON, "-m", "pytest", *options, "native/tests/python")
+    environment = tool_environment(PYTHONDONTWRITEBYTECODE="")
+    run(PYTHON, "-m", "pytest", *options, "native/tests/python", env=environment)
 
 
 def tools() -> None:

@@ -85,7 +85,7 @@ def test_an_unknown_suite_is_named(tmp_path):
 def test_few_and_many_cores_run_the_python_tests(monkeypatch, cores, processes):
     commands = []
     monkeypatch.setattr(test, "cores", lambda: cores)
-    monkeypatch.setattr(test, "run", lambda *words: commands.append(words))
+    monkeypatch.setattr(test, "run", lambda *words, env: commands.append(words))
     test.python()
     (words,) = commands
     assert words[words.index("-n") + 1] == processes
