@@ -20,10 +20,10 @@ from riffler.command.pen_fit import (
     Identified,
     IdentifyError,
     Sweep,
+    equations_of,
     filtered,
     identify,
     low_pass,
-    rows_of,
     square_to,
 )
 from riffler.command.pen_identify import (
@@ -156,7 +156,8 @@ def test_a_tension_that_changes_does_not_look_like_friction(geometry, seed, monk
 
     def off():
         """Relative error of the viscous friction, by what the equations leave with the true unknowns."""
-        matrix, side = rows_of(geometry, sweep, 0.0, 15.0, lead=0.0)
+        rows = equations_of(geometry, sweep, 0.0, 15.0, 15.0, lead=0.0).rows
+        matrix, side = rows.matrix, rows.side
         assert len(side) >= 50
         friction, *_ = np.linalg.lstsq(matrix[:, 12:18], side - matrix @ unknowns, rcond=None)
         return np.abs(friction / unknowns[12:18]).max()

@@ -31,6 +31,7 @@ GRAVITY = 9.80665  # m/s²
 LOCAL_GRAVITY = 0.0015  # relative standard uncertainty: 9.78 m/s² at the equator, 9.83 at the poles
 JOINTS = ("R1", "R2", "R3", "L1", "L2", "L3")  # in the order of PenGeometry.joints
 UNKNOWNS = 30  # K, c, v of six channels, g of four joints, I of six, m and j
+COLUMNS = UNKNOWNS + 2 + 6  # of _equations
 WIDTH = 0.013  # s: standard deviation of the low-pass filter
 NARROW = 0.003  # s: of its first part, which comes before all products of two filtered values
 REACH = 3  # half length of the filter, in units of WIDTH
@@ -67,12 +68,21 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Rows:
-    """The equations of a sweep; a sweep that ``rows_of`` cannot use has none."""
+    """The equations of a sweep; a sweep that ``equations_of`` cannot use has none."""
 
     kind: str
     matrix: np.ndarray  # (n, 30)
     side: np.ndarray  # (n,)
     loaded: bool  # with the hung weight
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A sweep's equations as the values are, and with one of two uncertain numbers off by its standard uncertainty."""
+
+    rows: Rows
+    hooked: Rows  # with the hook elsewhere
+    led: Rows  # with a lead larger by ``LEAD_ERROR``
 
 
 @dataclass(frozen=True)
@@ -114,14 +124,13 @@ def identify(
 ) -> Identified:
     """The fit to sweeps without and with the hung weight. IdentifyError if they do not determine all values."""
 
-    def rows_at(sweeps: Sequence[Sweep], force: float, hook: float, lead: float) -> list[Rows]:
-        return [Rows(s.kind, *rows_of(geometry, s, force, hook, lead), loaded=force > 0) for s in sweeps]
-
-    force, hook, off, late = weight.force, weight.hook, weight.hook + weight.hook_error, LEAD + LEAD_ERROR
-    unloaded = rows_at(free, 0.0, hook, LEAD)  # without a weight, its hook is in no equation
-    values, scatter, rows, residual = _fitted([*unloaded, *rows_at(loaded, force, hook, LEAD)])
-    hooked, *_ = _fitted([*unloaded, *rows_at(loaded, force, off, LEAD)], scatter=False)
-    led, *_ = _fitted([*rows_at(free, 0.0, hook, late), *rows_at(loaded, force, hook, late)], scatter=False)
+    force, hook, off = weight.force, weight.hook, weight.hook + weight.hook_error
+    unloaded = [equations_of(geometry, s, 0.0, hook, hook) for s in free]  # without a weight, its hook is in none
+    pulled = [equations_of(geometry, s, force, hook, off) for s in loaded]
+    both = [*unloaded, *pulled]
+    values, scatter, rows, residual = _fitted([e.rows for e in both])
+    hooked, *_ = _fitted([e.hooked for e in both], scatter=False)
+    led, *_ = _fitted([e.led for e in both], scatter=False)
     errors = np.sqrt(
         scatter**2
         + (hooked - values) ** 2
@@ -231,34 +240,44 @@ def _usable(angles: np.ndarray, period: float, slowest: float) -> np.ndarray:
     return np.flatnonzero((fast & one_way).all(axis=1))[::EVERY] + 2 * half
 
 
-def rows_of(
-    geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, lead: float = LEAD
-) -> tuple[np.ndarray, np.ndarray]:
-    """Equations of a sweep, (n, 30) and (n,). ``force``: of the hung weight, N; ``hook``: its distance from the grip's
-    middle towards the tool's tip, mm."""
-    centre = _usable(geometry.joints(sweep.counts), sweep.period, SLOWEST_LOADED if force else SLOWEST)
+def equations_of(
+    geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, off: float, lead: float = LEAD
+) -> Equations:
+    """Equations of a sweep. ``force``: of the hung weight, N; ``hook``: its distance from the grip's middle towards the
+    tool's tip, mm; ``off``: another such distance, that of ``Equations.hooked``."""
+    matrix, side, loaded = np.zeros((0, UNKNOWNS)), np.zeros(0), force > 0
+    centre = _usable(geometry.joints(sweep.counts), sweep.period, SLOWEST_LOADED if loaded else SLOWEST)
     if not len(centre):
-        return np.zeros((0, UNKNOWNS)), np.zeros(0)
-    equations, gradient, first = _equations(geometry, sweep, force, hook, lead)
+        none = Rows(sweep.kind, matrix, side, loaded)
+        return Equations(none, none, none)
+    equations, gradient, first = _equations(geometry, sweep, force, (hook, off), lead)
     rest, _, _ = low_pass(sweep.period, np.sqrt(WIDTH**2 - NARROW**2))
     samples, half = equations.reshape(len(equations), -1), len(rest) // 2
     flat = np.array([rest @ samples[at - half : at + half + 1] for at in centre - first])
     basis = square_to(gradient[centre - first])
-    out = np.einsum("nkj,nkp->njp", basis, flat.reshape(len(centre), 6, UNKNOWNS + 1)).reshape(-1, UNKNOWNS + 1)
-    return out[:, :UNKNOWNS], out[:, UNKNOWNS]
+    out = np.einsum("nkj,nkp->njp", basis, flat.reshape(len(centre), 6, COLUMNS)).reshape(-1, COLUMNS)
+    matrix, side, late = out[:, :UNKNOWNS], out[:, UNKNOWNS], out[:, :UNKNOWNS].copy()
+    late[:, :6] += out[:, UNKNOWNS + 2 :]
+    return Equations(
+        Rows(sweep.kind, matrix, side, loaded),
+        Rows(sweep.kind, matrix, out[:, UNKNOWNS + 1], loaded),
+        Rows(sweep.kind, late, side, loaded),
+    )
 
 
 def _equations(
-    geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, lead: float
+    geometry: pen.PenGeometry, sweep: Sweep, force: float, hooks: tuple[float, float], lead: float
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    """The six joints' equations at each sample, (n, 6, 31) with the known side last and no part along the gradient of
-    the grip's length; that gradient, (n, 6); and the number of the first of these samples."""
+    """The six joints' equations at each sample, (n, 6, 38) without a part along the gradient of the grip's length; that
+    gradient, (n, 6); and the number of the first of these samples. Behind the unknowns' columns stand the known side
+    for each hook, and what a lead larger by ``LEAD_ERROR`` adds to the first six."""
     value, slope, curve = low_pass(sweep.period, NARROW)
     first = len(value) // 2
     counts = sweep.counts[first : len(sweep.counts) - first]
     angles, ends = geometry.joints(sweep.counts), geometry.ends(sweep.counts)
     mean, rates, bends = (filtered(angles, kernel) for kernel in (value, slope, curve))
     speeding, amperes = filtered(ends, curve), filtered(sweep.currents, value + lead * sweep.period * slope)
+    later = filtered(sweep.currents, LEAD_ERROR * sweep.period * slope)
     n, ends = len(counts), ends[first : first + len(counts)]
 
     arms = np.moveaxis(geometry.jacobian(counts), 1, 2)  # (n, xyz, arm, θ)
@@ -267,19 +286,14 @@ def _equations(
     along = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1)[:, None]
     of_middle, of_apart = speeding.mean(axis=1), speeding[:, 1] - speeding[:, 0]
-    towards_tip = (1.0 if geometry.tip == "L" else -1.0) * hook / length
-    # A weight on a thread follows vertical motion only. Its swinging averages out over a sweep.
-    rising = of_middle[:, 2] + (towards_tip * of_apart)[:, 2]
-    down = -force * (1 + 1e-3 * rising / GRAVITY)
-    lever = middle[:, 2] + towards_tip * apart[:, 2]
-
     order = [JOINTS.index(c.name) for c in geometry.channels]
     ratio = np.array([c.ratio for c in geometry.channels])
     by_joint = np.empty(6)
     by_joint[order] = ratio
-    matrix = np.zeros((n, 6, UNKNOWNS + 1))
+    matrix = np.zeros((n, 6, COLUMNS))
     for k, (joint, c) in enumerate(zip(order, geometry.channels, strict=True)):
         matrix[:, joint, k] = c.sign * amperes[:, k]
+        matrix[:, joint, UNKNOWNS + 2 + k] = c.sign * later[:, k]
         matrix[:, joint, 6 + k] = -np.sign(rates[:, joint])
         matrix[:, joint, 12 + k] = -rates[:, joint] * ratio[k]
     for g, k in enumerate(_weighted(geometry)):
@@ -290,7 +304,12 @@ def _equations(
         matrix[:, joint, 22 + joint] = -1e-3 * bends[:, joint] / by_joint[joint]
     matrix[:, :, 28] = -1e-3 * np.einsum("nxk,nx->nk", middle, of_middle) / by_joint
     matrix[:, :, 29] = -1e-3 * np.einsum("nxk,nx->nk", apart, of_apart) / length**2 / by_joint
-    matrix[:, :, 30] = -lever * down[:, None] / by_joint
+    for k, hook in enumerate(hooks):
+        towards_tip = (1.0 if geometry.tip == "L" else -1.0) * hook / length
+        # A weight on a thread follows vertical motion only. Its swinging averages out over a sweep.
+        rising = of_middle[:, 2] + (towards_tip * of_apart)[:, 2]
+        down = -force * (1 + 1e-3 * rising / GRAVITY)
+        matrix[:, :, UNKNOWNS + k] = -(middle[:, 2] + towards_tip * apart[:, 2]) * down[:, None] / by_joint
 
     gradient = np.einsum("nxk,nx->nk", apart, along / length) / by_joint
     unit = gradient / np.linalg.norm(gradient, axis=1)[:, None]
