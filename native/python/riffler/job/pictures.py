@@ -22,6 +22,7 @@ STEEL, CLAY, GLASS = (0.66, 0.72, 0.78), (0.80, 0.71, 0.60), (0.62, 0.68, 0.62)
 KINDS = ("#c8553d", "#d08c2a", "#2f6690", "#3f7d4f")
 NAMES = ("rapid", "lead", "cut", "link")
 PIXELS = 640
+ROUNDING = 1e-5  # pixels: more than what is allowed for on a triangle's edges
 LIGHT = np.array([-0.44, 0.53, 0.72])
 SEGMENTS = 60_000  # largest number drawn of a path; more would differ by less than a pixel
 
@@ -46,12 +47,13 @@ class View:
         seen = mesh.vertices @ self.axes
         place = (seen[:, :2] - self.lower) / self.pixel
         corners, z = place[mesh.triangles], seen[:, 2][mesh.triangles]
-        low = np.maximum(np.floor(corners.min(axis=1)).astype(int), 0)
-        size = np.ceil(corners.max(axis=1)).astype(int) - low + 1
+        # The box of pixels whose centres a triangle can cover: none for most triangles smaller than a pixel.
+        low = np.maximum(np.ceil(corners.min(axis=1) - 0.5 - ROUNDING).astype(int), 0)
+        size = np.floor(corners.max(axis=1) - 0.5 + ROUNDING).astype(int) - low + 1
         edge1, edge2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0]
         # Draw triangles of similar size together, each over the pixels of its box.
-        side = np.maximum(size[:, 0], size[:, 1])
+        side = np.where((size > 0).all(axis=1), size.max(axis=1), 0)
         for level in range(int(np.ceil(np.log2(side.max(initial=1)))) + 1):
             width = 2**level
             which = np.flatnonzero((side <= width) & (side > width // 2) & (np.abs(area) > 1e-12))
@@ -60,15 +62,19 @@ class View:
         return out
 
     def _draw(self, out, some, width, low, corners, edge1, edge2, area, z) -> None:  # type: ignore[no-untyped-def]
-        step = np.stack(np.meshgrid(np.arange(width), np.arange(width), indexing="ij"), -1).reshape(-1, 2)
-        pixel = low[some, None] + step
+        pixel = low[some, None] + np.arange(width)[:, None]  # (triangles, width, 2): columns and rows of the box
         rel = pixel + 0.5 - corners[some, None, 0]
-        u = (rel[..., 0] * edge2[some, None, 1] - rel[..., 1] * edge2[some, None, 0]) / area[some, None]
-        v = (rel[..., 1] * edge1[some, None, 0] - rel[..., 0] * edge1[some, None, 1]) / area[some, None]
+        one, two = rel * edge1[some, None, ::-1], rel * edge2[some, None, ::-1]
+        size = area[some, None, None]
+        u = (two[:, :, None, 0] - two[:, None, :, 1]) / size
+        v = (one[:, None, :, 1] - one[:, :, None, 0]) / size
         inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
-        inside &= (pixel < np.array(self.shape)).all(axis=-1)
-        near = z[some, None, 0] + u * (z[some, None, 1] - z[some, None, 0]) + v * (z[some, None, 2] - z[some, None, 0])
-        np.maximum.at(out, tuple(pixel[inside].T), near[inside])
+        within = pixel < np.array(self.shape)
+        inside &= within[:, :, None, 0] & within[:, None, :, 1]
+        which, column, row = np.nonzero(inside)
+        u, v, z = u[inside], v[inside], z[some][which]
+        near = z[:, 0] + u * (z[:, 1] - z[:, 0]) + v * (z[:, 2] - z[:, 0])
+        np.maximum.at(out.reshape(-1), pixel[which, column, 0] * self.shape[1] + pixel[which, row, 1], near)
 
     def shaded(self, depth: NDArray[np.float64], colour: NDArray[np.float64] | tuple) -> NDArray[np.float64]:
         """RGBA image with light from the upper left; transparent where there is nothing."""
