@@ -58,17 +58,19 @@ def height_over(hulls, poses, points, step):
     distance."""
     faces = [ConvexHull(corners).equations for corners in hulls]
     reach = max(np.linalg.norm(corners, axis=1).max() for corners in hulls)
-    best = np.full(len(points), np.inf)
+    best, places = np.full(len(points), np.inf), np.vstack([points.T, np.ones(len(points))])
     for a, b in pairwise(poses):
         start = frame_of(a)
         turn = Rotation.from_matrix(frame_of(b) @ start.T).as_rotvec()
         way = b[:3] - a[:3]
         n = int(np.ceil((np.linalg.norm(way) + np.linalg.norm(turn) * reach) / step)) + 1
-        for t in np.linspace(0, 1, n):
-            frame = Rotation.from_rotvec(t * turn).as_matrix() @ start
-            local = (points - a[:3] - t * way) @ frame
-            for equations in faces:
-                best = np.minimum(best, (local @ equations[:, :3].T + equations[:, 3]).max(axis=1))
+        t = np.linspace(0, 1, n)[:, None]
+        frames, tips = Rotation.from_rotvec(t * turn).as_matrix() @ start, a[:3] + t * way
+        for equations in faces:
+            normals = equations[:, :3] @ frames.transpose(0, 2, 1)
+            offsets = equations[:, 3] - np.einsum("nfx,nx->nf", normals, tips)
+            for planes in np.concatenate([normals, offsets[:, :, None]], axis=2):
+                np.minimum(best, (planes @ places).max(axis=0), out=best)
     return best
 
 
