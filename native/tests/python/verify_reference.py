@@ -54,19 +54,23 @@ class HeightMap:
         low, high = np.maximum(middle - half, 0), np.minimum(middle + half, 1)
         met = low <= high  # False for nan
 
+        out = np.full(self.z.shape, np.inf)
+        ux, uy = (np.broadcast_to(u, out.shape)[met] for u in (ux, uy))
+
         def height(t):
             rho = np.hypot(ux - t * dx, uy - t * dy)
             beyond = np.clip(rho - (radius - corner), 0, corner)
             return a[2] + t * (b[2] - a[2]) + corner - np.sqrt(corner**2 - beyond**2)
 
-        low, high = np.where(met, low, 0), np.where(met, high, 0)
+        low, high = low[met], high[met]
         g = (np.sqrt(5) - 1) / 2
         best = np.minimum(height(low), height(high))
         for _ in range(60):
             p, q = high - g * (high - low), low + g * (high - low)
             right = height(p) > height(q)
             low, high = np.where(right, p, low), np.where(right, high, q)
-        return np.where(met, np.minimum(best, height((low + high) / 2)), np.inf)
+        out[met] = np.minimum(best, height((low + high) / 2))
+        return out
 
     def cut(self, profile, a, b):
         """Returns what each ray lost, mm."""
@@ -90,13 +94,14 @@ def points_of(volume, step, lower=(-np.inf,) * 3, upper=(np.inf,) * 3) -> np.nda
     counts, spans = volume.intervals("z")
     index = np.repeat(np.arange(counts.size), counts.ravel())
     places = np.array(volume.lower)[:2] + (np.column_stack(np.divmod(index, counts.shape[1])) + 0.5) * volume.pitch
-    out = [np.empty((0, 3))]
-    for k in np.flatnonzero(((places > lower[:2]) & (places < upper[:2])).all(axis=1)):
-        near, far = spans[k]
-        z = np.append(np.arange(far, near, -step), near)
-        z = z[(z > lower[2]) & (z < upper[2])]
-        out.append(np.column_stack([np.broadcast_to(places[k], (len(z), 2)), z]))
-    return np.concatenate(out)
+    chosen = np.flatnonzero(((places > lower[:2]) & (places < upper[:2])).all(axis=1))
+    near, far = spans[chosen].T
+    steps = np.ceil((far - near) / step).astype(int)  # and the lower end
+    first = np.cumsum(steps + 1) - (steps + 1)
+    z = np.repeat(far, steps + 1) - step * (np.arange((steps + 1).sum()) - np.repeat(first, steps + 1))
+    z[first + steps] = near
+    kept = (z > lower[2]) & (z < upper[2])
+    return np.column_stack([np.repeat(places[chosen], steps + 1, axis=0)[kept], z[kept]])
 
 
 def in_frusta(points, frusta, pose) -> np.ndarray:
@@ -119,8 +124,8 @@ def near_frusta(points, frusta, poses, margin=0.5) -> np.ndarray:
     z0, z1 = min(f[0] for f in frusta), max(f[2] for f in frusta)
     radius = np.hypot((z1 - z0) / 2, max(max(f[1], f[3]) for f in frusta)) + margin
     centres = poses[:, :3] + (z0 + z1) / 2 * poses[:, 3:]
-    inside = (points > centres.min(0) - radius) & (points < centres.max(0) + radius)
-    points = points[inside.all(axis=1)]
+    for k, (low, high) in enumerate(zip(centres.min(0) - radius, centres.max(0) + radius, strict=True)):
+        points = points[(points[:, k] > low) & (points[:, k] < high)]
     # And of the slabs across the tool's axis at the middle pose, as far as any pose leans from it.
     middle = poses[len(poses) // 2]
     ends = np.concatenate([poses[:, :3] + z * poses[:, 3:] for z in (z0, z1)]) - middle[:3]
