@@ -17,12 +17,15 @@ STEP = 0.2  # mm between sampled poses
 
 def removed(points, poses):
     """Signed distance of points (n, 3) from the union of the ball cutter at poses (m, 6), negative inside."""
-    radius, out = DIAMETER / 2, np.full(len(points), np.inf)
+    radius, squares = DIAMETER / 2, np.full(len(points), np.inf)
+    places = np.column_stack([points, np.ones(len(points))]).T
+    lengths = (points**2).sum(axis=1)
     for tip, axis in zip(poses[:, :3], poses[:, 3:], strict=True):
-        off = points - (tip + radius * axis)
-        along = np.clip(off @ axis, 0, LENGTH - radius)  # the flat top end rounded: it stays above the stock
-        np.minimum(out, np.linalg.norm(off - along[:, None] * axis, axis=1) - radius, out=out)
-    return out
+        centre = tip + radius * axis
+        up, away = np.array([[*axis, -axis @ centre], [*(-2 * centre), centre @ centre]]) @ places
+        along = np.clip(up, 0, LENGTH - radius)  # the flat top end rounded: it stays above the stock
+        np.minimum(squares, lengths + away - along * (2 * up - along), out=squares)
+    return np.sqrt(np.maximum(squares, 0)) - radius
 
 
 def in_material(volume, points):
