@@ -96,13 +96,12 @@ def lower_side(tool, rho, larger=0.0):
 
 def z_map(op, x, y, step=0.05):
     """Height of the material at the points after all moves at feed, by brute force: the cutter at dense places."""
-    places = [np.zeros((0, 3))]
-    for k in range(1, len(op)):
-        if op.kind[k]:
-            a, b = op.poses[k - 1, :3], op.poses[k, :3]
-            places.append(np.linspace(a, b, max(2, math.ceil(np.linalg.norm(b[:2] - a[:2]) / step) + 1)))
-    out = np.full(x.shape, np.inf)
-    places, r = np.concatenate(places), op.tool.diameter / 2
+    feeds = np.flatnonzero(np.asarray(op.kind)[1:])
+    start, end = op.poses[feeds, :3], op.poses[feeds + 1, :3]
+    count = np.maximum(2, np.ceil(np.linalg.norm((end - start)[:, :2], axis=1) / step).astype(int) + 1)
+    share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
+    places = np.repeat(start, count, axis=0) + share[:, None] * np.repeat(end - start, count, axis=0)
+    out, r = np.full(x.shape, np.inf), op.tool.diameter / 2
     for k in range(0, len(places), 64):
         p = places[k : k + 64, :, None]
         lo, hi = p.min(axis=(0, 2)) - r, p.max(axis=(0, 2)) + r
@@ -222,19 +221,22 @@ class Judge:
         if within is not None:
             self.asked &= within(self.points, self.triangles)
         cloud = surface_samples(part, 60000, seed + 1)[0]
-        cloud = cloud[np.argsort(cloud[:, 0])]
+        x, y, z = np.ascontiguousarray(cloud[np.argsort(cloud[:, 0])].T)
         tips = tips_touching(tool, self.points, self.normals, allowance + larger)
         self.reachable = self.asked & (tips[:, 2] >= part.bounds[0][2] - 1e-9)
         # On steeper faces the flank of a tapered cutter cuts, at a place that this judge does not know.
         self.reachable &= slope <= math.pi / 2 - corner(tool)[2] + 1e-6
         grown = allowance + 0.8 * larger
+        reach = tool.diameter / 2 + grown
         for k in np.flatnonzero(self.reachable):
-            reach = tool.diameter / 2 + grown
-            first, last = np.searchsorted(cloud[:, 0], tips[k, 0] + np.array([-reach, reach]))
-            close = cloud[first:last]
-            rho = np.hypot(close[:, 0] - tips[k, 0], close[:, 1] - tips[k, 1])
+            band = slice(*np.searchsorted(x, tips[k, 0] + np.array([-reach, reach])))
+            # Nothing of the cutter is lower than its tip.
+            close = band.start + np.flatnonzero(
+                (z[band] > tips[k, 2] - grown - 1e-9) & (np.abs(y[band] - tips[k, 1]) < reach)
+            )
+            rho = np.hypot(x[close] - tips[k, 0], y[close] - tips[k, 1])
             near = rho < reach
-            if (close[near, 2] > tips[k, 2] + lower_side(tool, rho[near], grown)).any():
+            if (z[close[near]] > tips[k, 2] + lower_side(tool, rho[near], grown)).any():
                 self.reachable[k] = False
 
     def _left(self, op, off, which):
