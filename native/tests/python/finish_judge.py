@@ -107,7 +107,8 @@ def z_map(op, x, y, step=0.05):
         lo, hi = p.min(axis=(0, 2)) - r, p.max(axis=(0, 2)) + r
         near = np.flatnonzero((x >= lo[0]) & (x <= hi[0]) & (y >= lo[1]) & (y <= hi[1]) & (out > lo[2] + r))
         if len(near):
-            z = p[:, 2] + lower_side(op.tool, np.hypot(x[near] - p[:, 0], y[near] - p[:, 1]))
+            rho = np.sqrt((x[near] - p[:, 0]) ** 2 + (y[near] - p[:, 1]) ** 2)
+            z = p[:, 2] + lower_side(op.tool, rho)
             out[near] = np.minimum(out[near], z.min(axis=0))
     return out
 
