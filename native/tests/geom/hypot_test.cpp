@@ -23,6 +23,18 @@ TEST(Hypot, IsExactWhereTheHypotenuseIsANumber) {
     }
 }
 
+TEST(Hypot, HasTheSameBitsAtEveryScale) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> side(0.5, 1);
+  std::uniform_int_distribution<int> smaller(0, 29);
+  for (int power = -990; power <= 1020; ++power)
+    for (int i = 0; i < 20; ++i) {
+      const double x = side(random), y = std::ldexp(side(random), -smaller(random)), h = hypot(x, y);
+      ASSERT_EQ(hypot(std::ldexp(y, power), std::ldexp(x, power)), std::ldexp(h, power))
+          << x << ' ' << y << ' ' << power;
+    }
+}
+
 TEST(Hypot, HandlesZeroInfinityAndNan) {
   EXPECT_EQ(hypot(0, 0), 0);
   EXPECT_FALSE(std::signbit(hypot(-0.0, -0.0)));
