@@ -74,10 +74,43 @@ struct JointMobility {
     answer = free(gradient);
     give = dot(gradient, answer);
   }
-  /// Without the constraint. The first `zeros` entries of `b` are 0.
-  JointVector free(JointVector b, std::size_t zeros = 0) const {
-    for (std::size_t i = zeros; i < kJoints; ++i) {
-      for (std::size_t k = zeros; k < i; ++k) b[i] -= lower[i][k] * b[k];
+  /// With stretch · x = `grows`.
+  JointVector solve(const JointVector& b, double grows) const {
+    JointVector x = free(b);
+    const double pull = (dot(stretch, x) - grows) / give;
+    for (std::size_t k = 0; k < kJoints; ++k) x[k] -= pull * answer[k];
+    return x;
+  }
+  /// In row k how all joints move under a unit torque at joint k: the bits of solve(). The innermost loops are over
+  /// the torques, so that no division waits for that of another torque.
+  std::array<JointVector, kJoints> columns() const {
+    std::array<JointVector, kJoints> x{}, out;  // x: row of a joint, column of a torque
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      x[i][i] = 1;
+      for (std::size_t j = 0; j < i; ++j) take(x[i], lower[i][j], x[j]);
+      for (double& value : x[i]) value /= lower[i][i];
+    }
+    for (std::size_t i = kJoints; i-- > 0;) {
+      for (std::size_t j = i + 1; j < kJoints; ++j) take(x[i], lower[j][i], x[j]);
+      for (double& value : x[i]) value /= lower[i][i];
+    }
+    JointVector pull{};
+    for (std::size_t i = 0; i < kJoints; ++i) take(pull, -stretch[i], x[i]);
+    for (double& value : pull) value /= give;
+    for (std::size_t i = 0; i < kJoints; ++i) take(x[i], answer[i], pull);
+    for (std::size_t k = 0; k < kJoints; ++k)
+      for (std::size_t i = 0; i < kJoints; ++i) out[k][i] = x[i][k];
+    return out;
+  }
+
+ private:
+  static void take(JointVector& from, double times, const JointVector& what) {
+    for (std::size_t k = 0; k < kJoints; ++k) from[k] -= times * what[k];
+  }
+  /// A⁻¹ b, without the constraint.
+  JointVector free(JointVector b) const {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      for (std::size_t k = 0; k < i; ++k) b[i] -= lower[i][k] * b[k];
       b[i] /= lower[i][i];
     }
     for (std::size_t i = kJoints; i-- > 0;) {
@@ -85,21 +118,6 @@ struct JointMobility {
       b[i] /= lower[i][i];
     }
     return b;
-  }
-  /// With stretch · x = `grows`.
-  JointVector solve(const JointVector& b, double grows) const { return constrained(free(b), grows); }
-  /// How all joints move under a unit torque at joint k.
-  JointVector column(std::size_t k) const {
-    JointVector unit{};
-    unit[k] = 1;
-    return constrained(free(unit, k), 0);
-  }
-
- private:
-  JointVector constrained(JointVector x, double grows) const {
-    const double pull = (dot(stretch, x) - grows) / give;
-    for (std::size_t k = 0; k < kJoints; ++k) x[k] -= pull * answer[k];
-    return x;
   }
 };
 

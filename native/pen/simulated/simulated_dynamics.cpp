@@ -198,8 +198,8 @@ const PenDynamics::Loaded& PenDynamics::loaded(const PenLoad& load, double time)
     return *loaded_;
   const JointReach reach(posture_);
   const JointMobility mobility = this->mobility(reach, &load, time);
-  loaded_ = Loaded{time, load.damping, load.brake, reach, mobility, drag(load), weight_torques(), stop_torques(), {}};
-  for (std::size_t k = 0; k < kJoints; ++k) loaded_->columns[k] = mobility.column(k);
+  loaded_ = Loaded{time,           load.damping,      load.brake, reach, mobility, drag(load), weight_torques(),
+                   stop_torques(), mobility.columns()};
   return *loaded_;
 }
 
@@ -254,7 +254,7 @@ void PenDynamics::kick(const PenLoad& load, double time) {
 
 /// Free motion for `time`: the momentum that leaves a posture arrives at the next.
 void PenDynamics::drift(double time) {
-  const auto [from, mobility] = free();
+  const auto& [from, mobility] = free();
   const PenPosture start = posture_;
   const Vec3 start_middle = 0.5 * (start.arms[0].end + start.arms[1].end);
   const double mass = grip_mass_ + held_mass_, inertia = grip_inertia_ + held_inertia_;
