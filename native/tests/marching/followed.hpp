@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "riffler/marching/mesher.hpp"
@@ -38,7 +41,7 @@ class Patches {
     for (const std::size_t n : changed) patches_[n] = mesher.patch(n);
   }
   void expect_same(const Mesh& whole, const std::string& what) const {
-    std::map<std::array<float, 3>, int> numbers;
+    std::unordered_map<std::array<float, 3>, int, PlaceHash> numbers(whole.vertices.size());
     for (const Vec3& v : whole.vertices) {
       const Vec3f f(v);
       numbers.emplace(std::array{f.x, f.y, f.z}, static_cast<int>(numbers.size()));
@@ -63,6 +66,13 @@ class Patches {
   }
 
  private:
+  struct PlaceHash {
+    std::size_t operator()(const std::array<float, 3>& place) const {
+      std::uint64_t out = 0;
+      for (const float x : place) out = (out ^ std::bit_cast<std::uint32_t>(x + 0.0F)) * 0x9E3779B97F4A7C15U;
+      return static_cast<std::size_t>(out >> 16);
+    }
+  };
   std::map<std::size_t, MeshPatch> patches_;
 };
 
