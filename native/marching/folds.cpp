@@ -70,6 +70,10 @@ struct Folds {
   std::vector<CellVertex> ends;
   std::vector<std::size_t> seen;
 
+  /// Most are the one before.
+  void see(std::size_t brick) {
+    if (seen.empty() || seen.back() != brick) seen.push_back(brick);
+  }
   void tidy() { base::sort_unique(ends), base::sort_unique(seen); }
 };
 
@@ -85,7 +89,7 @@ void add_corners(const Surface& surface, const QuadRef& ref, std::uint32_t trian
 /// coincide, these have to separate.
 void look_at(const Surface& surface, const QuadRef& ref, bool whole, bool note, Folds& out) {
   const auto see = [&](const QuadRef& quad) {
-    for (int n = 0; note && n < 4; ++n) out.seen.push_back(surface.bricks.index_of(corner_cell(quad.edge, n)));
+    for (int n = 0; note && n < 4; ++n) out.see(surface.bricks.index_of(corner_cell(quad.edge, n)));
   };
   see(ref);
   if (folded(surface.mesh, 2 * std::size_t{ref.quad}, 2 * std::size_t{ref.quad} + 1))

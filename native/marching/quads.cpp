@@ -2,20 +2,10 @@
 #include <bit>
 
 #include "base/sort_unique.hpp"
-#include "marching/cases.hpp"
 #include "marching/surface.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
-
-Vec3i corner_cell(const LatticeEdge& edge, int n) {
-  const int slot = corner_at(n, edge.rising);
-  // The reverse of make_edge: cells below the edge have it on their upper sides.
-  Vec3i cell{edge.i, edge.j, edge.k};
-  if (slot == 3 || slot == 0) --cell[(edge.axis + 1) % 3];
-  if (slot == 1 || slot == 0) --cell[(edge.axis + 2) % 3];
-  return cell;
-}
 
 Quad Surface::quad(const QuadRef& ref) const {
   Quad out{{}, ref.edge.axis, ref.edge.rising ? -1.0 : 1.0};

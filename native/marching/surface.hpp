@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "marching/bricks.hpp"
+#include "marching/cases.hpp"
 #include "marching/diagonal.hpp"
 #include "marching/float_grid.hpp"
 #include "marching/hits.hpp"
@@ -68,7 +69,14 @@ struct Surface {
 };
 
 /// The cell whose vertex is corner n of the edge's quad.
-Vec3i corner_cell(const LatticeEdge& edge, int n);
+inline Vec3i corner_cell(const LatticeEdge& edge, int n) {
+  const int slot = corner_at(n, edge.rising);
+  // The reverse of make_edge: cells below the edge have it on their upper sides.
+  Vec3i cell{edge.i, edge.j, edge.k};
+  if (slot == 3 || slot == 0) --cell[(edge.axis + 1) % 3];
+  if (slot == 1 || slot == 0) --cell[(edge.axis + 2) % 3];
+  return cell;
+}
 
 /// Appends the quads of a cell's edges with a corner that has the mark (kAnyMark: all of them).
 void append_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std::vector<QuadRef>& out);
