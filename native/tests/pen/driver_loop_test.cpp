@@ -359,9 +359,10 @@ TEST(DriverLoop, TheWrenchOfAStepThatTakesTooLongIsNotSent) {
     double takes = 0;
   } slow(b.clock);
   DriverLoop loop(b.model, slow, b.connector, b.clock, std::make_unique<FakeTransport>(b.pen.device));
+  std::uint16_t sequence = 0;
   for (const double takes : {0.0, 0.019, 0.021, 0.3, 0.0}) {
     slow.takes = takes;
-    b.send(input(1));
+    b.send(input(++sequence));
     loop.tick();
     ASSERT_NEAR(slow.last.wrench().force.z, 1, 1e-9);
     EXPECT_EQ(loop.status().wrench == Wrench{}, takes > 0.02) << takes;
