@@ -171,7 +171,10 @@ def found(screen, region, words, share):
                 if fitting:
                     screen.move(x, fitting[0])
                     yield 0.1
-                    return
+                    there = yield from commands(screen, x, fitting[:1])
+                    if all(word in there.get(fitting[0], "") for word in words):
+                        return
+                    # What was drawn late has moved the button since.
     yield from screen.shot("no-button")
     raise AssertionError(f"no button has {words}; there are {sorted(seen)}")
 

@@ -74,7 +74,7 @@ def follow(watch: Watch, seconds: float, draw: Callable[[Any], None] | None, pla
         while (now := time.monotonic()) - start < seconds:
             watch.poll(now)
             if draw is not None and now - shown >= period:
-                shown = now
+                shown = max(shown + period, now - period)  # a late one delays none of those after it
                 watch.look(now)
                 draw(watch.line() if plain else watch.picture(width_of_terminal()))
             time.sleep(POLL)
