@@ -25,6 +25,13 @@ FCL, COAL = "FCL OBB, tool mesh", "Coal OBBRSS, tool mesh"
 CAD_PARTS = ("fandisk", "ktoolcav", "ktoolcor", "spider")  # files that are looked for among the models
 PLAIN = ("bore", "wall")  # where a shank would be as wide as the bore
 ROUNDING = 1e-9  # mm
+MISSED = (  # of queries that a budget ended, with their bound
+    Column("missed depth, mean mm", "missed_mean_mm", report.mm),
+    Column("largest mm", "missed_max_mm", report.mm),
+    Column("its bound, mean mm", "bound_mean_mm", report.mm),
+    Column("largest mm", "bound_max_mm", report.mm),
+    Column("bound violated", "violated"),
+)
 CURVE = np.linspace(0, 1, 201)  # shares at which times are kept for the plot
 
 
@@ -140,7 +147,7 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         Column("out of reach", "away_s", report.micro),
     )
     found = models(settings)
-    named = [*core.contact_part_names(), *map(str, found)]
+    named = parts_of(found)
     poses, repeats = (20, 1) if settings.quick else (500, 3)
     cases = [(part, tool) for part in named for tool in (("plain",) if part in PLAIN else ("plain", "long"))]
     for done, (part, tool) in enumerate(cases):
@@ -164,6 +171,11 @@ def models(settings: Settings) -> list[Path]:
     """Parts from files that are there."""
     paths = [settings.models / f"{name}.stl" for name in CAD_PARTS] if settings.models else []
     return [path for path in paths if path.exists()]
+
+
+def parts_of(found: list[Path]) -> list[str]:
+    """Named parts, and those of the files."""
+    return [*core.contact_part_names(), *map(str, found)]
 
 
 def add_part(table: report.Section, figures: dict[str, Any], part: str, tool: str) -> None:
@@ -194,14 +206,10 @@ def part_budgets(out: Report, settings: Settings, progress: Any) -> None:
         "Queries with a time budget on these parts",
         Column("part", "part"),
         Column("budget", "budget_s", report.micro),
-        Column("missed depth, mean mm", "missed_mean_mm", report.mm),
-        Column("largest mm", "missed_max_mm", report.mm),
-        Column("its bound, mean mm", "bound_mean_mm", report.mm),
-        Column("largest mm", "bound_max_mm", report.mm),
-        Column("bound violated", "violated"),
+        *MISSED,
     )
     poses = 20 if settings.quick else 500
-    named = [*core.contact_part_names(), *map(str, models(settings))]
+    named = parts_of(models(settings))
     for done, part in enumerate(named):
         progress(done / len(named))
         name = part.rpartition("/")[2].removesuffix(".stl")
@@ -209,13 +217,7 @@ def part_budgets(out: Report, settings: Settings, progress: Any) -> None:
                 for _ in range(3)]  # fmt: skip
         for k, budget in enumerate(PART_BUDGETS):
             missed, bound = (np.array([run[k][key] for run in runs]) for key in ("missed_mm", "bound_mm"))
-            violated = int(np.sum((missed > bound + ROUNDING) | (missed < -ROUNDING)))
-            missed, bound = np.median(missed, axis=0).clip(0), np.median(bound, axis=0)
-            table.row(
-                part=name, budget_s=budget, missed_mean_mm=missed.mean(), missed_max_mm=missed.max(),
-                bound_mean_mm=bound.mean(), bound_max_mm=bound.max(), violated=violated,
-            )  # fmt: skip
-            out.check(violated == 0, f"{name}, {1e6 * budget:g} µs: the bound was violated {violated} times")
+            table.row(part=name, budget_s=budget, **missing(missed, bound, out, f"{name}, {1e6 * budget:g} µs"))
     table.notes.append(
         f"{poses} poses of a ball R3 × 30 as above. The median of three queries counts, since a budget is real time; "
         "violations are counted in all three."
@@ -223,6 +225,15 @@ def part_budgets(out: Report, settings: Settings, progress: Any) -> None:
 
 
 # ---- budgets
+
+
+def missing(missed: np.ndarray, bound: np.ndarray, out: Report, budget: str) -> dict[str, Any]:
+    """The cells of MISSED, from (runs, poses) depths and bounds, mm: the median run of each pose; violations in all."""
+    violated = int(np.sum((missed > bound + ROUNDING) | (missed < -ROUNDING)))
+    out.check(violated == 0, f"{budget}: the bound was violated {violated} times")
+    depth, bounds = np.median(missed, axis=0).clip(0), np.median(bound, axis=0)
+    figures = (depth.mean(), depth.max(), bounds.mean(), bounds.max(), violated)
+    return dict(zip((column.key for column in MISSED), figures, strict=True))
 
 
 def budgets(out: Report, settings: Settings) -> None:
@@ -234,25 +245,18 @@ def budgets(out: Report, settings: Settings) -> None:
         Column("mean time", "mean_s", report.micro),
         Column("99 %", "p99_s", report.micro),
         Column("candidates looked at", "checked", lambda x: f"{100 * x:.1f} %"),
-        Column("missed depth, mean mm", "missed_mean_mm", report.mm),
-        Column("largest mm", "missed_max_mm", report.mm),
-        Column("its bound, mean mm", "bound_mean_mm", report.mm),
-        Column("largest mm", "bound_max_mm", report.mm),
-        Column("bound violated", "violated"),
+        *MISSED,
     )
     poses = 60 if settings.quick else 2000
     for squares in SQUARES["quick" if settings.quick else "full"]:
         figures = json.loads(core.contact_budgets(squares, "long", poses, [*BUDGETS, 1.0]))
         for row in figures["budgets"]:
-            us, missed, bound = (np.array(row[key]) for key in ("us", "missed_mm", "bound_mm"))
-            violated = int(np.sum((missed > bound + ROUNDING) | (missed < -ROUNDING)))
+            us, missed, bound = (np.array([row[key]]) for key in ("us", "missed_mm", "bound_mm"))
             table.row(
                 triangles=2 * squares**2, budget_s=1e-6 * row["budget_us"], mean_s=1e-6 * us.mean(),
-                p99_s=1e-6 * quantile(us, 0.99), checked=float(np.mean(row["checked"])),
-                missed_mean_mm=missed.clip(0).mean(), missed_max_mm=missed.clip(0).max(), bound_mean_mm=bound.mean(),
-                bound_max_mm=bound.max(), violated=violated,
+                p99_s=1e-6 * quantile(us[0], 0.99), checked=float(np.mean(row["checked"])),
+                **missing(missed, bound, out, f"budget of {row['budget_us']:g} µs"),
             )  # fmt: skip
-            out.check(violated == 0, f"budget of {row['budget_us']:g} µs: the bound was violated {violated} times")
     table.notes.append(
         f"{poses} poses; the depth missed is that of the query without budget less that of the one with it. The last "
         "row's budget is longer than any query takes."
