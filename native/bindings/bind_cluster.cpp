@@ -41,7 +41,7 @@ class SharedPlan : Guarded {
 
 using ShareList = py::typing::List<py::typing::Tuple<std::size_t, std::size_t, py::bytes>>;
 
-ShareList add(SharedPlan& self, const nc::Program& chunk, const ProgressLike& progress) {
+ShareList add_chunk(SharedPlan& self, const nc::Program& chunk, const ProgressLike& progress) {
   const Progress listener = to_progress(progress);
   std::vector<verify::VerifyPlan::Share> shares =
       self.run([&](verify::VerifyPlan& plan) { return plan.add(chunk, listener); });
@@ -86,7 +86,7 @@ void bind_cluster(py::module_& m) {
   define_with_arguments(
       [&](const auto&... arguments) { bound.def(py::init(with_arguments<>(&make_of<SharedPlan>)), arguments...); });
   bound
-      .def("add", &add, py::arg("program"), py::kw_only(), py::arg("progress") = py::none(),
+      .def("add", &add_chunk, py::arg("program"), py::kw_only(), py::arg("progress") = py::none(),
            "List of (slab, number of moves, bytes) of the chunk: the moves that can touch each slab.")
       .def(
           "context",

@@ -104,9 +104,9 @@ auto made(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const
   return long_call(progress, work, Identity());
 }
 
-ColliderPtr make(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
-                 double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
-                 const PushLike& fixture_push) {
+ColliderPtr make_collider(const PartPtr& part, const std::vector<SharedVolume*>& fixtures,
+                          const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+                          const StiffnessLike& fixture_stiffness, const PushLike& fixture_push) {
   return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push,
               ProgressLike(py::none()))
       .cast<ColliderPtr>();
@@ -162,7 +162,7 @@ NearestResult nearest(const collide::Collider& self, const Tool& tool, const Dou
       "Nearest", py::dict("distance"_a = at.distance, "point"_a = from_vec3(at.point), "part"_a = name_of(at.touch)));
 }
 
-std::string describe(const collide::Collider& self) {
+std::string describe_collider(const collide::Collider& self) {
   const collide::Collider& c = self;
   return "<riffler.Collider: " + std::to_string(c.triangles()) + " triangles, " + std::to_string(c.points()) +
          " points " + py::cast<std::string>(py::str(py::float_(c.spacing()))) + " mm apart, " +
@@ -248,7 +248,7 @@ Examples
 >>> collider.clearance(riffler.Tool.ball(6, 30), [[10, 10, 12, 0, 0, 1]]).round(3).tolist()
 [2.0]
 )")
-      .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def(py::init(&make_collider), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
            py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal")
       .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
@@ -379,7 +379,7 @@ Examples
       .def_property_readonly(
           "spacing", [](const collide::Collider& self) { return self.spacing(); },
           "Spacing of the points on the part, mm.")
-      .def("__repr__", &describe);
+      .def("__repr__", &describe_collider);
 }
 
 }  // namespace riffler::bindings

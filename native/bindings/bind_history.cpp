@@ -27,25 +27,19 @@ OneCaller lock(SharedHistory& h) {
   return {h, "the history"};
 }
 
-sweep::CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return sweep::CarveMode::Remove;
-  if (mode == "add") return sweep::CarveMode::Add;
-  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
-}
-
 std::optional<Volume> snapshot_of(SharedVolume* volume) {
   if (!volume) return std::nullopt;
   return Reading(*volume).volume.snapshot();
 }
 
-std::unique_ptr<SharedHistory> make(SharedVolume& base, std::size_t memory_limit) {
+std::unique_ptr<SharedHistory> make_history(SharedVolume& base, std::size_t memory_limit) {
   return std::make_unique<SharedHistory>(sweep::History(Reading(base).volume, memory_limit));
 }
 
 HistoryStroke to_stroke(const Tool& tool, const Doubles& poses, const std::string& mode, double tolerance,
                         SharedVolume* protect) {
   PosesOf path = to_poses_of(tool, poses, "poses");
-  return {tool, std::move(path.plain), to_mode(mode), tolerance, snapshot_of(protect), std::move(path.rolled)};
+  return {tool, std::move(path.plain), to_carve_mode(mode), tolerance, snapshot_of(protect), std::move(path.rolled)};
 }
 
 /// Runs an edit, body(history, progress), without Python's lock, and alone.
@@ -57,8 +51,8 @@ auto edited(SharedHistory& self, const ProgressLike& progress, const Body& body)
   return body(self.history, listener);
 }
 
-StrokeId add(SharedHistory& self, const Tool& tool, const Doubles& poses, const std::string& mode, double tolerance,
-             SharedVolume* protect, const ProgressLike& progress) {
+StrokeId add_stroke(SharedHistory& self, const Tool& tool, const Doubles& poses, const std::string& mode,
+                    double tolerance, SharedVolume* protect, const ProgressLike& progress) {
   HistoryStroke stroke = to_stroke(tool, poses, mode, tolerance, protect);
   return edited(self, progress, [&](sweep::History& h, const Progress& p) { return h.add(std::move(stroke), p); });
 }
@@ -79,7 +73,7 @@ void replace(SharedHistory& self, StrokeId id, const Tool* tool, const std::opti
     PosesOf path = to_poses_of(stroke.tool, *poses, "poses");
     stroke.poses = std::move(path.plain), stroke.rolled = std::move(path.rolled);
   }
-  if (mode) stroke.mode = to_mode(*mode);
+  if (mode) stroke.mode = to_carve_mode(*mode);
   if (tolerance) stroke.tolerance = *tolerance;
   if (protect) stroke.protect = snapshot_of(protect);
   edited(self, progress, [&](sweep::History& h, const Progress& p) { h.replace(id, std::move(stroke), p); });
@@ -138,7 +132,7 @@ std::string with_errors(const char* before, const char* after) {
 }
 
 void bind_insertions(HistoryClass& history) {
-  history.def("add", &add, py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("mode") = "remove",
+  history.def("add", &add_stroke, py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("mode") = "remove",
               py::arg("tolerance") = 0.01, py::arg("protect") = py::none(), py::arg("progress") = py::none(),
               with_errors(R"(Adds a stroke at the end. It carves like ``volume.carve`` with the same arguments.
 
@@ -403,7 +397,8 @@ Examples
 >>> history.volume.to_bytes() == block.to_bytes()
 True
 )");
-  history.def(py::init(&make), py::arg("base"), py::kw_only(), py::arg("memory_limit") = sweep::History::kMemoryLimit);
+  history.def(py::init(&make_history), py::arg("base"), py::kw_only(),
+              py::arg("memory_limit") = sweep::History::kMemoryLimit);
   bind_insertions(history);
   bind_edits(history);
   bind_state(history);

@@ -54,7 +54,7 @@ StrokeList strokes(const SharedJournal& journal) {
   return out;
 }
 
-py::array_t<double> poses(const StrokeView& stroke) {
+py::array_t<double> stroke_poses(const StrokeView& stroke) {
   const session::JournalStroke& s = stroke.get();
   if (s.forward.empty()) return from_poses(s.poses);
   std::vector<RolledPose> rolled;
@@ -63,7 +63,7 @@ py::array_t<double> poses(const StrokeView& stroke) {
   return from_poses(rolled);
 }
 
-std::map<int, Tool> tools_of(const session::Journal& journal) {
+std::map<int, Tool> journal_tools(const session::Journal& journal) {
   std::map<int, Tool> out;
   const py::object from_dict = py::type::of<Tool>().attr("from_dict");
   for (const auto& [number, text] : journal.tools())
@@ -73,12 +73,12 @@ std::map<int, Tool> tools_of(const session::Journal& journal) {
 
 nc::Program program(const session::Journal& journal, const std::optional<double>& feed, double spindle,
                     const std::optional<double>& safe_height, double clearance) {
-  return to_program(journal, tools_of(journal), {feed, spindle, {safe_height, clearance, {}}});
+  return to_program(journal, journal_tools(journal), {feed, spindle, {safe_height, clearance, {}}});
 }
 
 /// What is done of a replay, of a copy: another thread may continue to record.
 auto replay_work(const session::Journal& journal, const std::optional<std::filesystem::path>& folder) {
-  return [copy = journal, tools = tools_of(journal), folder](const Progress& listener) {
+  return [copy = journal, tools = journal_tools(journal), folder](const Progress& listener) {
     return replay_all(copy, tools, folder.value_or(""), listener);
   };
 }
@@ -100,7 +100,7 @@ auto replayed_with_mask(const session::Journal& journal, const std::optional<std
 
 auto strokes_at(const session::Journal& journal, const Doubles& points, double tolerance,
                 const ProgressLike& progress) {
-  const auto work = [copy = journal, tools = tools_of(journal), places = to_vec3s(points, "points"),
+  const auto work = [copy = journal, tools = journal_tools(journal), places = to_vec3s(points, "points"),
                      tolerance](const Progress& listener) {
     return session::stroke_search(copy, tools, tolerance).find(places, listener);
   };
@@ -116,7 +116,7 @@ OptionalArray column(const std::vector<double>& values) {
 void bind_stroke(py::module_& m) {
   py::class_<StrokeView>(m, "JournalStroke", "One stroke of a journal: see `Journal.add_stroke`.")
       .def_property_readonly(
-          "poses", &poses,
+          "poses", &stroke_poses,
           "(n, 6): tip in mm and unit axis; of a hand tool (n, 9), with its forward direction. A copy.")
       .def_property_readonly(
           "times", [](const StrokeView& s) { return column(s.get().times); }, "(n,) s, or None.")

@@ -70,7 +70,7 @@ mesh::Triangles to_triangles(const py::object& object) {
   return triangles;
 }
 
-MeshPtr make(const ArrayLike& vertices, const ArrayLike& triangles) {
+MeshPtr make_mesh(const ArrayLike& vertices, const ArrayLike& triangles) {
   auto mesh = std::make_shared<Mesh>(Mesh{to_vertices(vertices), to_triangles(triangles)});
   validate(*mesh);
   return mesh;
@@ -79,7 +79,7 @@ MeshPtr make(const ArrayLike& vertices, const ArrayLike& triangles) {
 /// What `riffler.threemf` reads, as files are read: equal vertices become one.
 MeshPtr read_3mf(const std::filesystem::path& path) {
   const py::tuple found = py::module_::import("riffler.threemf").attr("read")(path);
-  const MeshPtr mesh = make(found[0], found[1]);
+  const MeshPtr mesh = make_mesh(found[0], found[1]);
   mesh::Welder<Vec3> welder(mesh->vertices.size());
   std::vector<int> places(mesh->vertices.size());
   welder.add(mesh->vertices, places.data());
@@ -108,7 +108,7 @@ MeshPtr read_cad(const std::filesystem::path& path, double tolerance, const Prog
   return part.attr("mesh").cast<MeshPtr>();
 }
 
-MeshPtr read(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
+MeshPtr read_mesh_file(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
   if (is_3mf(path)) return read_3mf(path);
   if (is_cad(path)) return read_cad(path, tolerance, progress);
   if (!(tolerance > 0) || !std::isfinite(tolerance)) throw py::value_error("tolerance must be a positive number of mm");
@@ -117,7 +117,7 @@ MeshPtr read(const std::filesystem::path& path, double tolerance, const Progress
   return std::make_shared<Mesh>(mesh::read_mesh(path, listener));
 }
 
-auto write(const MeshPtr& mesh, const std::filesystem::path& path, const ProgressLike& progress) {
+auto write_mesh_file(const MeshPtr& mesh, const std::filesystem::path& path, const ProgressLike& progress) {
   const auto work = [=](const Progress& listener) {
     write_mesh(*mesh, path, listener);
     return path;
@@ -136,7 +136,7 @@ py::array_t<double> bounds_array(const Mesh& mesh) {
   return take<double>(std::vector<Vec3>{box.lower, box.upper}, 3);
 }
 
-std::string repr(const Mesh& mesh) {
+std::string describe_mesh(const Mesh& mesh) {
   return "<riffler.Mesh: " + std::to_string(mesh.vertices.size()) + " vertices, " +
          std::to_string(mesh.triangles.size()) + " triangles>";
 }
@@ -166,9 +166,9 @@ Examples
 >>> mesh.area
 0.5
 )");
-  mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
+  mesh.def(py::init(&make_mesh), "vertices"_a, "triangles"_a);
   mesh.def_static(
-      "read", &read, "path"_a, py::kw_only(), "tolerance"_a = 0.01, "progress"_a = py::none(),
+      "read", &read_mesh_file, "path"_a, py::kw_only(), "tolerance"_a = 0.01, "progress"_a = py::none(),
       R"(Reads a .stl (binary or ASCII), .obj, .ply or .3mf file, in which equal vertices become one, or a CAD file.
 
 From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf. From a .step, .stp, .iges,
@@ -206,7 +206,7 @@ Examples
 >>> riffler.Mesh.read("block.stl")
 <riffler.Mesh: 210 vertices, 416 triangles>
 )");
-  mesh.def("write", &write, "path"_a, py::kw_only(), "progress"_a = py::none(),
+  mesh.def("write", &write_mesh_file, "path"_a, py::kw_only(), "progress"_a = py::none(),
            R"(Writes a .stl (binary), .obj, .ply (binary) or .3mf file, whole or not at all.
 
 Coordinates of .stl are rounded to float32, those of .3mf (mm) are float32 to the last step; .3mf needs the package
@@ -251,14 +251,14 @@ Examples
                              "(2, 3) float64, mm: lower and upper corner of the triangles' box. ValueError without "
                              "triangles.");
   bind_mesh_edits(mesh);
-  mesh.def("__repr__", &repr);
+  mesh.def("__repr__", &describe_mesh);
   mesh.def("__copy__", [](const MeshPtr& self) { return self; });
   mesh.def("__deepcopy__", [](const MeshPtr& self, const py::dict&) { return self; }, "memo"_a);
   mesh.def(
       py::pickle([](const py::object& self) { return py::make_tuple(self.attr("vertices"), self.attr("triangles")); },
                  [](const py::tuple& state) {
                    if (state.size() != 2) throw py::value_error("a pickled Mesh has two arrays");
-                   return make(py::object(state[0]), py::object(state[1]));
+                   return make_mesh(py::object(state[0]), py::object(state[1]));
                  }));
 }
 

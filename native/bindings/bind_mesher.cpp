@@ -35,8 +35,8 @@ Volume state_of(SharedVolume& volume) {
   return Reading(volume).volume.snapshot();
 }
 
-std::unique_ptr<SharedMesher> make(SharedVolume& volume, const std::optional<double>& tolerance,
-                                   const ProgressLike& callable) {
+std::unique_ptr<SharedMesher> make_mesher(SharedVolume& volume, const std::optional<double>& tolerance,
+                                          const ProgressLike& callable) {
   const Progress progress = to_progress(callable);
   const Volume state = state_of(volume);
   const NoGil release;
@@ -300,7 +300,7 @@ ValueError
     A tolerance that is negative or not finite.
 )");
   mesher
-      .def(py::init(&make), py::arg("volume"), py::kw_only(), py::arg("tolerance") = py::none(),
+      .def(py::init(&make_mesher), py::arg("volume"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("progress") = py::none())
       .def("update", &update, py::arg("volume"), py::kw_only(), py::arg("normals") = false,
            R"(Follows a change of the volume.

@@ -29,9 +29,10 @@ WriteReport to_result(const nc::WriteReport& report) {
                                                 "rewinds"_a = report.rewinds, "pole_passages"_a = passages));
 }
 
-WriteReport write(const nc::Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
-                  double axis_tolerance, const OptionsLike& options, const std::shared_ptr<collide::Collider>& collider,
-                  SharedVolume* stock, double contact_tolerance) {
+WriteReport write_nc(const nc::Program& self, const std::filesystem::path& path, const std::string& post,
+                     double tolerance, double axis_tolerance, const OptionsLike& options,
+                     const std::shared_ptr<collide::Collider>& collider, SharedVolume* stock,
+                     double contact_tolerance) {
   const nc::WriteOptions how{post, tolerance, axis_tolerance, to_options(options), collider || stock};
   std::optional<Volume> material;
   if (stock) material = Reading(*stock).volume.snapshot();
@@ -177,7 +178,7 @@ Examples
 >>> [len(part) for part in riffler.Program.stream("part.ngc", machine="3-axis", rows=2)]
 [2, 2]
 )")
-      .def("write", &write, py::arg("path"), py::kw_only(), py::arg("post") = "tcp", py::arg("tolerance") = 0.01,
+      .def("write", &write_nc, py::arg("path"), py::kw_only(), py::arg("post") = "tcp", py::arg("tolerance") = 0.01,
            py::arg("axis_tolerance") = 0.00175, py::arg("options") = py::none(), py::arg("collider") = py::none(),
            py::arg("stock") = py::none(), py::arg("contact_tolerance") = 0.05,
            R"(Writes NC code: the whole file or none. The same program gives the same bytes.

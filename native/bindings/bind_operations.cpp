@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "bindings/program_types.hpp"
+#include "bindings/program_arguments.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "riffler/plan/cc_frame.hpp"
@@ -56,13 +56,6 @@ PlannedMoves from_planned(Planned&& planned) {
                "feed"_a = take<double>(std::move(found.feeds)), "removed"_a = take<double>(std::move(planned.removed)),
                "blocked"_a = py::tuple(blocked), "reason"_a = found.reason, "stats"_a = stats,
                "engagement"_a = planned.engagement, "exact"_a = exact));
-}
-
-std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays, const std::string& name) {
-  std::vector<std::vector<Vec3>> curves;
-  for (const py::handle curve : arrays)
-    curves.push_back(to_vec3s(py::cast<Doubles>(curve), (name + "[" + std::to_string(curves.size()) + "]").c_str()));
-  return curves;
 }
 
 Planned planned(plan::FinishResult&& found) {

@@ -25,9 +25,10 @@ struct SharedOrientSession : Guarded {
   }
 };
 
-std::unique_ptr<SharedOrientSession> make(const Path& path, const Tool& tool, const Obstacles& part,
-                                          std::shared_ptr<pen::Pen> pen, session::OrientSessionSettings settings,
-                                          const BudgetLike& budget) {
+std::unique_ptr<SharedOrientSession> make_orient_session(const Path& path, const Tool& tool, const Obstacles& part,
+                                                         std::shared_ptr<pen::Pen> pen,
+                                                         session::OrientSessionSettings settings,
+                                                         const BudgetLike& budget) {
   tool.require_revolved("a session");
   settings.loop.passivity = pen->passivity();
   settings.loop.step.budget = to_budget(budget, *pen);
@@ -186,7 +187,7 @@ void bind_constructor(py::class_<SharedOrientSession>& c) {
           made.step.coupling.stiffness = stiffness, made.step.coupling.turn_stiffness = turn_stiffness;
           made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power, made.safety.ramp = ramp;
           made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask, pivot};
-          return make(path, tool, part, pen, std::move(settings), budget);
+          return make_orient_session(path, tool, part, pen, std::move(settings), budget);
         }),
         "path"_a.none(false), "tool"_a, "part"_a.none(false), "pen"_a.none(false), py::kw_only(),
         "point"_a = usual.point, "axis"_a = py::none(), "slide"_a = loop.slides, "interpolation"_a = "smooth",

@@ -60,7 +60,7 @@ Pairs to_pairs(const Doubles& array, std::size_t n, const char* name) {
   return out;
 }
 
-Path make(double radius, const Doubles& centres, const Doubles& contacts, const Doubles& normals, bool closed) {
+Path make_path(double radius, const Doubles& centres, const Doubles& contacts, const Doubles& normals, bool closed) {
   if (!std::isfinite(radius) || !(radius > 0)) throw py::value_error("radius must be positive and finite");
   auto out = std::make_shared<plan::PencilPath>();
   out->radius = radius, out->closed = closed;
@@ -139,7 +139,7 @@ Examples
 >>> path.length
 10.0
 )")
-      .def(py::init(&make), py::arg("radius"), py::arg("centres"), py::arg("contacts"), py::arg("normals"),
+      .def(py::init(&make_path), py::arg("radius"), py::arg("centres"), py::arg("contacts"), py::arg("normals"),
            py::kw_only(), py::arg("closed") = false)
       .def_readonly("radius", &plan::PencilPath::radius, "Radius of the ball, mm.")
       .def_readonly("closed", &plan::PencilPath::closed, "A loop: its last point is joined to its first.")

@@ -80,7 +80,7 @@ auto column_getter(const std::vector<V>& (nc::Program::*column)() const) {
   return [column](const py::object& self) { return view<V>(self, (py::cast<const nc::Program&>(self).*column)()); };
 }
 
-py::array_t<double> poses(const py::object& self) {
+py::array_t<double> program_poses(const py::object& self) {
   return view<double>(self, py::cast<const nc::Program&>(self).poses(), 6);
 }
 
@@ -88,7 +88,7 @@ CutList cuts(const py::object& self) {
   py::list out;
   const auto& given = py::cast<const nc::Program&>(self);
   const py::object whole = given.via().empty() ? self : py::cast(followed(given));
-  const py::array all = poses(whole);
+  const py::array all = program_poses(whole);
   for (const nc::ToolRun& run : py::cast<const nc::Program&>(whole).runs())
     out.append(py::make_tuple(
         run.tool, all[py::slice(static_cast<py::ssize_t>(run.begin), static_cast<py::ssize_t>(run.end), 1)]));
@@ -112,7 +112,7 @@ nc::Program edited_transform(const nc::Program& program, const ArrayLike& matrix
   return transformed(program, turn, shift);
 }
 
-std::string repr(const nc::Program& program) {
+std::string describe_program(const nc::Program& program) {
   std::string text = "<riffler.Program: " + std::to_string(program.size()) + " rows, ";
   const std::size_t runs = program.runs().size();
   return text + std::to_string(runs) + (runs == 1 ? " tool run>" : " tool runs>");
@@ -167,7 +167,8 @@ array([  0., 600.])
            py::arg("tool") = 1, py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
            py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<nc::Note>(), "[]"),
            py::arg("at_machine") = false, py::arg("via") = py::none())
-      .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
+      .def_property_readonly("poses", &program_poses,
+                             "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
       .def_property_readonly("feed", column_getter(&nc::Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
       .def_property_readonly(
           "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const nc::Program&>(self).rapid()); },
@@ -377,7 +378,7 @@ Examples
 [(3, (5, 6))]
 )")
       .def("__len__", &nc::Program::size)
-      .def("__repr__", &repr);
+      .def("__repr__", &describe_program);
 }
 
 }  // namespace riffler::bindings

@@ -47,15 +47,10 @@ std::optional<Pose> to_pose(const OptionalArrayLike& at) {
   return pose;
 }
 
-sweep::CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return sweep::CarveMode::Remove;
-  if (mode == "add") return sweep::CarveMode::Add;
-  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
-}
-
-std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
-                                    std::shared_ptr<pen::Pen> pen, const Obstacles& obstacles, SharedVolume* protect,
-                                    session::SessionSettings settings, const BudgetLike& budget) {
+std::unique_ptr<SharedSession> make_session(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
+                                            std::shared_ptr<pen::Pen> pen, const Obstacles& obstacles,
+                                            SharedVolume* protect, session::SessionSettings settings,
+                                            const BudgetLike& budget) {
   tool.require_revolved("a session");
   if (!pen) pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
   settings.loop.passivity = pen->passivity();
@@ -84,7 +79,7 @@ void bind_constructor(py::class_<SharedSession>& c) {
                     std::uint32_t clutch_mask, double pivot, bool touch, double touch_force, std::uint32_t touch_mask,
                     const BudgetLike& budget, std::size_t undo) {
           session::SessionSettings settings;
-          settings.mode = to_mode(mode), settings.start = to_pose(at), settings.undo = undo;
+          settings.mode = to_carve_mode(mode), settings.start = to_pose(at), settings.undo = undo;
           session::SculptLoopSettings& made = settings.loop;
           made.sculpt.coupling.stiffness = stiffness, made.sculpt.coupling.turn_stiffness = turn_stiffness;
           made.sculpt.coupling.damping = damping, made.sculpt.coupling.turn_damping = turn_damping;
@@ -96,7 +91,7 @@ void bind_constructor(py::class_<SharedSession>& c) {
             material->validate("the stock");
             made.carving.removal_constant = material->removal_constant, made.sculpt.damping = material->damping;
           }
-          return make(volume, tool, std::move(pen), obstacles, protect, std::move(settings), budget);
+          return make_session(volume, tool, std::move(pen), obstacles, protect, std::move(settings), budget);
         }),
         "volume"_a.none(false), "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
         "protect"_a = py::none(), "mode"_a = "remove", "material"_a = py::none(), "at"_a = py::none(),

@@ -1,7 +1,7 @@
 // Strategies other than the pencil cut: engraving and swarf.
 #include <memory>
 
-#include "bindings/program_types.hpp"
+#include "bindings/program_arguments.hpp"
 #include "riffler/plan/engrave.hpp"
 #include "riffler/plan/swarf.hpp"
 
@@ -9,19 +9,9 @@ namespace riffler::bindings {
 
 namespace {
 
-std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays) {
-  std::vector<std::vector<Vec3>> curves;
-  for (const py::handle curve : arrays) {
-    const auto array = py::cast<Doubles>(curve);
-    const std::string name = "curves[" + std::to_string(curves.size()) + "]";
-    curves.push_back(to_vec3s(array, name.c_str()));
-  }
-  return curves;
-}
-
 py::list engraved(const Mesh& part, const ArraysLike& arrays, const Tool& tool, const plan::EngraveOptions& options,
                   const ProgressLike& callable) {
-  const std::vector<std::vector<Vec3>> curves = to_curves(arrays);
+  const std::vector<std::vector<Vec3>> curves = to_curves(arrays, "curves");
   const Progress progress = to_progress(callable);
   std::vector<plan::Engraved> found;
   {

@@ -57,7 +57,7 @@ std::vector<std::vector<Vec2>> to_trims(const TrimsLike& object) {
   return loops;
 }
 
-SurfacePtr read(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
+SurfacePtr read_surface_file(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
   using namespace py::literals;
   return py::module_::import("riffler.cad.reading")
       .attr("read_surface")(path, "tolerance"_a = tolerance, "progress"_a = progress)
@@ -230,7 +230,8 @@ Examples
 >>> points.round(9).tolist(), distance.round(9).tolist()
 ([[3.0, 4.0, 4.0]], [5.0])
 )");
-  surface.def_static("read", &read, "path"_a, py::kw_only(), "tolerance"_a = 1e-4, "progress"_a = py::none(),
+  surface.def_static("read", &read_surface_file, "path"_a, py::kw_only(), "tolerance"_a = 1e-4,
+                     "progress"_a = py::none(),
                      R"(The exact faces of a STEP, IGES or BREP file: one patch for each face, in its place, in mm.
 
 OpenCASCADE (``pip install 'riffler[cad]'``) converts the faces to rational B-splines, in a process of its own, without

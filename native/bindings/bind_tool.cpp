@@ -21,7 +21,7 @@ std::optional<Tool> hand_tool_from(const std::string& kind, const std::function<
 namespace {
 
 RIFFLER_TYPED(RowsLike, "numpy.typing.ArrayLike | collections.abc.Sequence[collections.abc.Sequence[float]]")
-RIFFLER_TYPED(ToolDict, "dict[str, bool | float | str | list[tuple[float, ...]]]")
+RIFFLER_TYPED(ToolFields, "dict[str, bool | float | str | list[tuple[float, ...]]]")
 RIFFLER_TYPED(OutlineList, "list[tuple[str, numpy.typing.NDArray[numpy.float64]]]")
 
 using FrustumList = py::typing::List<py::typing::Tuple<double, double, double, double>>;
@@ -239,7 +239,7 @@ Examples
 6.0
 )")
       .def(
-          "to_dict", [](const Tool& t) { return ToolDict(to_dict(t)); },
+          "to_dict", [](const Tool& t) { return ToolFields(to_dict(t)); },
           R"(The JSON / TOML form: kind, its sizes, name, shank and holder.
 
 Returns

@@ -52,7 +52,7 @@ py::array_t<double> normals(SharedVolume& self, const std::string& direction) {
   return out;
 }
 
-std::string describe(SharedVolume& self) {
+std::string describe_volume(SharedVolume& self) {
   const Reading reading(self);
   const Volume& v = reading.volume;
   std::string rays;
@@ -131,7 +131,7 @@ Examples
 >>> volume.take_counters().moves, volume.counters.moves
 (1, 0)
 )")
-      .def("__repr__", &describe);
+      .def("__repr__", &describe_volume);
 }
 
 void bind_rays(VolumeClass& volume) {

@@ -24,19 +24,13 @@ std::vector<double> to_times(const py::object& dt, std::size_t moves) {
   return {array.data(), array.data() + moves};
 }
 
-sweep::CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return sweep::CarveMode::Remove;
-  if (mode == "add") return sweep::CarveMode::Add;
-  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
-}
-
 sweep::Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance,
                        const OptionalArrayLike& dt, double removal_constant, const std::string& mode,
                        SharedVolume* protect, const ProgressLike& progress) {
   const PosesOf path = to_poses_of(tool, poses, "poses");
-  sweep::CarveOptions options{tolerance,        to_times(dt, path.rows() == 0 ? 0 : path.rows() - 1),
-                              removal_constant, to_progress(progress),
-                              to_mode(mode),    nullptr};
+  sweep::CarveOptions options{tolerance,           to_times(dt, path.rows() == 0 ? 0 : path.rows() - 1),
+                              removal_constant,    to_progress(progress),
+                              to_carve_mode(mode), nullptr};
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);

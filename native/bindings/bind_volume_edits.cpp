@@ -19,10 +19,6 @@ namespace {
 using VolumeList = py::typing::List<std::shared_ptr<SharedVolume>>;
 
 /// What is given of a box, and of `own` what is not.
-Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper) {
-  return {lower.is_none() ? own.lower : to_vec3(lower, "lower"), upper.is_none() ? own.upper : to_vec3(upper, "upper")};
-}
-
 auto grown_volume(SharedVolume& self, const OptionalArrayLike& lower, const OptionalArrayLike& upper,
                   const ProgressLike& progress) {
   const Volume state = Reading(self).volume.snapshot();

@@ -14,10 +14,6 @@ std::shared_ptr<SharedVolume> empty(const ArrayLike& lower, const ArrayLike& upp
 }
 
 /// What is given of a box, and of `own` what is not.
-Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper) {
-  return {lower.is_none() ? own.lower : to_vec3(lower, "lower"), upper.is_none() ? own.upper : to_vec3(upper, "upper")};
-}
-
 auto sphere_volume(const ArrayLike& centre, double radius, double pitch, const std::string& directions,
                    const OptionalArrayLike& lower, const OptionalArrayLike& upper, const ProgressLike& progress) {
   const dexel::Sphere solid{to_vec3(centre, "centre"), radius};

@@ -17,6 +17,7 @@
 #include "riffler/geom/rolled_pose.hpp"
 #include "riffler/geom/vec.hpp"
 #include "riffler/plan/orientation.hpp"
+#include "riffler/sweep/carve_options.hpp"
 #include "riffler/tool/tool.hpp"
 
 namespace riffler::bindings {
@@ -64,6 +65,8 @@ std::size_t check_rows(const Doubles& array, std::size_t columns, const char* na
 /// Three numbers from any sequence; ValueError naming `name`.
 Vec3 to_vec3(const py::object& object, const char* name);
 py::array_t<double> from_vec3(const Vec3& v);
+/// `own` with the corners that are not None; ValueError naming "lower" or "upper".
+Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper);
 /// A (4, 4) matrix whose last row is 0, 0, 0, 1, as the map p → first p + second. ValueError naming the argument.
 std::pair<Mat3, Vec3> to_affine(const py::object& object, const std::string& name);
 /// (n, 3) copy.
@@ -91,6 +94,9 @@ py::array_t<double> from_poses(const std::vector<RolledPose>& poses);
 
 /// A Tool, its dict, or JSON text of it → JSON text in one form.
 std::string tool_json(const py::object& tool);
+
+/// From "remove" or "add"; ValueError with both.
+sweep::CarveMode to_carve_mode(const std::string& mode);
 
 /// "cutter", "shank", "holder" or "fixture".
 const char* name_of(collide::Touch touch);

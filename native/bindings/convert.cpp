@@ -38,6 +38,10 @@ Vec3 to_vec3(const py::object& object, const char* name) {
   return v;
 }
 
+Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper) {
+  return {lower.is_none() ? own.lower : to_vec3(lower, "lower"), upper.is_none() ? own.upper : to_vec3(upper, "upper")};
+}
+
 std::pair<Mat3, Vec3> to_affine(const py::object& object, const std::string& name) {
   Doubles matrix;
   try {
@@ -112,6 +116,12 @@ PosesOf to_poses_of(const Tool& tool, const Doubles& array, const char* name) {
 py::array_t<double> from_poses(const std::vector<RolledPose>& poses) {
   static_assert(sizeof(RolledPose) == 9 * sizeof(double));
   return take<double>(std::vector<RolledPose>(poses), 9);
+}
+
+sweep::CarveMode to_carve_mode(const std::string& mode) {
+  if (mode == "remove") return sweep::CarveMode::Remove;
+  if (mode == "add") return sweep::CarveMode::Add;
+  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
 }
 
 PyObject*& task_request() {

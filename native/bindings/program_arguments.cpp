@@ -27,6 +27,13 @@ std::vector<double> to_column(const py::handle& object, std::size_t rows, const 
   return {array.data(), array.data() + rows};
 }
 
+std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays, const std::string& name) {
+  std::vector<std::vector<Vec3>> curves;
+  for (const py::handle curve : arrays)
+    curves.push_back(to_vec3s(py::cast<Doubles>(curve), (name + "[" + std::to_string(curves.size()) + "]").c_str()));
+  return curves;
+}
+
 int to_number(double value, const std::string& name, std::size_t row) {
   if (!(value >= 0 && value <= nc::kMaxNumber && value == std::floor(value)))
     throw py::value_error(name + ", row " + std::to_string(row) + ": must be a whole number from 0 to " +

@@ -28,6 +28,9 @@ Doubles to_doubles(const py::handle& object, const std::string& name);
 /// One number for all rows, or one per row. A single number stays single where `spread` is false.
 std::vector<double> to_column(const py::handle& object, std::size_t rows, const std::string& name, bool spread = true);
 
+/// Curves of points (n, 3); ValueError naming the curve, as "curves[2]".
+std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays, const std::string& name);
+
 /// A whole number from 0 to nc::kMaxNumber; ValueError naming `name` and the row.
 int to_number(double value, const std::string& name, std::size_t row);
 
