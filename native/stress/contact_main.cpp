@@ -3,10 +3,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "riffler/mesh/io/io.hpp"
 #include "stress/arguments.hpp"
 #include "stress/contact_run.hpp"
 
@@ -26,6 +28,7 @@ void usage() {
       "  --poses N            (100000)\n"
       "  --seed N             (1)\n"
       "  --reference-every N  poses from one that the independent reference judges to the next (64)\n"
+      "  --part FILE          a part from a file in place of the random ones; several, in turns\n"
       "  --session N          this one alone, every pose judged: what a failure's reproducer says");
 }
 
@@ -38,6 +41,8 @@ Arguments parse(int argc, char** argv) {
       out.options.seed = whole_number(option, value);
     else if (option == "--reference-every")
       out.options.reference_every = std::max(1, static_cast<int>(whole_number(option, value)));
+    else if (option == "--part" && value)
+      out.options.parts.push_back({std::filesystem::path(value).stem().string(), riffler::mesh::read_mesh(value)});
     else if (option == "--session")
       out.session = whole_number(option, value), out.options.reference_every = 1;
     else
@@ -49,7 +54,7 @@ Arguments parse(int argc, char** argv) {
 
 void print(const ContactFailure& f) {
   std::printf("FAILED: pose %ld of session %llu (%s): %s\n  again: %s\n", f.pose,
-              static_cast<unsigned long long>(f.session), name(f.scene), f.problem.c_str(), reproducer(f).c_str());
+              static_cast<unsigned long long>(f.session), f.scene.c_str(), f.problem.c_str(), reproducer(f).c_str());
   std::fflush(stdout);
 }
 
@@ -60,7 +65,7 @@ void print(const ContactResults& results) {
     std::printf("%-10s %9ld %9ld %8ld %9ld %12.4g %13.3f %7ld\n", what, t.poses, t.touching, t.judged, t.cut_short,
                 t.missed, t.share, t.failures);
   };
-  for (std::size_t k = 0; k < results.scenes.size(); ++k) row(name(static_cast<ContactScene>(k)), results.scenes[k]);
+  for (const auto& [scene, tally] : results.scenes) row(scene.c_str(), tally);
   row("all", results.total());
 }
 

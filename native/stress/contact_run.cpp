@@ -18,42 +18,47 @@ constexpr double kBracket = 1e-3;  // mm, of the reference
 constexpr double kLeftOut = 1e-3;  // mm, without a budget: see Contact::missed_depth_bound
 constexpr double kPoints = 4000;   // of the force: the default number takes far longer to prepare than to use
 
+NamedPart part_of(Random& random, const ContactOptions& options, std::uint64_t number) {
+  if (!options.parts.empty()) return options.parts[number % options.parts.size()];
+  const auto scene = static_cast<ContactScene>(number % static_cast<std::uint64_t>(ContactScene::kCount));
+  return {name(scene), draw_part(random, scene)};
+}
+
+/// Fixtures near the origin in one of eight sessions; none for the part that is far away, which no tool would reach.
+std::vector<Volume> fixtures_of(Random& random, const NamedPart& part) {
+  if (part.name == name(ContactScene::FarAway) || !random.one_in(8)) return {};
+  const Vec3 low{random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-8, 0)};
+  return {Volume::block({{low, low + Vec3(10, 8, 6)}, 1.0, "z"})};
+}
+
+double spacing_of(const Mesh& part) {
+  double area = 0;
+  for (const Vec3i& t : part.triangles) {
+    const Vec3 &a = part.vertices[t.x], &b = part.vertices[t.y], &c = part.vertices[t.z];
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+  }
+  return std::sqrt(area / kPoints);
+}
+
 /// Part, tool and reference of one session.
 struct ContactSession {
   Random random;
-  ContactScene scene;
-  Mesh part;
+  NamedPart part;
   Tool tool;
   collide::Collider collider;
   collide::Assembly assembly;
   reference::AssemblyDistance reference;
   std::vector<reference::Corners> corners;
 
-  static std::vector<Volume> fixtures_of(Random& random, ContactScene scene) {
-    if (scene == ContactScene::FarAway || !random.one_in(8)) return {};
-    const Vec3 low{random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-8, 0)};
-    return {Volume::block({{low, low + Vec3(10, 8, 6)}, 1.0, "z"})};
-  }
-
-  static double spacing_of(const Mesh& part) {
-    double area = 0;
-    for (const Vec3i& t : part.triangles) {
-      const Vec3 &a = part.vertices[t.x], &b = part.vertices[t.y], &c = part.vertices[t.z];
-      area += 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
-    return std::sqrt(area / kPoints);
-  }
-
-  ContactSession(std::uint64_t seed, std::uint64_t number)
-      : random(seed, kContactStream, number),
-        scene(static_cast<ContactScene>(number % static_cast<std::uint64_t>(ContactScene::kCount))),
-        part(draw_part(random, scene)),
+  ContactSession(const ContactOptions& options, std::uint64_t number)
+      : random(options.seed, kContactStream, number),
+        part(part_of(random, options, number)),
         tool(draw_tool(random)),
-        collider(part, fixtures_of(random, scene), {.spacing = spacing_of(part)}),
+        collider(part.mesh, fixtures_of(random, part), {.spacing = spacing_of(part.mesh)}),
         assembly(tool),
         reference(tool) {
-    for (const Vec3i& t : part.triangles)
-      corners.push_back({part.vertices[t.x], part.vertices[t.y], part.vertices[t.z]});
+    for (const Vec3i& t : part.mesh.triangles)
+      corners.push_back({part.mesh.vertices[t.x], part.mesh.vertices[t.y], part.mesh.vertices[t.z]});
   }
 };
 
@@ -137,7 +142,7 @@ class PoseCheck {
 
 ContactTally ContactResults::total() const {
   ContactTally sum;
-  for (const ContactTally& t : scenes) {
+  for (const auto& [scene, t] : scenes) {
     sum.poses += t.poses, sum.touching += t.touching, sum.judged += t.judged;
     sum.cut_short += t.cut_short, sum.failures += t.failures;
     sum.missed = std::max(sum.missed, t.missed), sum.share = std::max(sum.share, t.share);
@@ -146,10 +151,10 @@ ContactTally ContactResults::total() const {
 }
 
 void run_contact_session(const ContactOptions& options, std::uint64_t number, ContactResults& out) {
-  ContactSession session(options.seed, number);
-  ContactTally& tally = out.scenes[static_cast<std::size_t>(session.scene)];
+  ContactSession session(options, number);
+  ContactTally& tally = out.scenes[session.part.name];
   for (long k = 0; k < options.poses; ++k) {
-    const Pose pose = draw_pose(session.random, session.part, session.tool);
+    const Pose pose = draw_pose(session.random, session.part.mesh, session.tool);
     const long count = static_cast<long>(number) * options.poses + k;
     ++tally.poses;
     std::string problem;
@@ -160,7 +165,7 @@ void run_contact_session(const ContactOptions& options, std::uint64_t number, Co
     }
     if (problem.empty()) continue;
     ++tally.failures;
-    if (out.failures.size() < kPosesKept) out.failures.push_back({options.seed, number, session.scene, k, problem});
+    if (out.failures.size() < kPosesKept) out.failures.push_back({options.seed, number, session.part.name, k, problem});
   }
 }
 

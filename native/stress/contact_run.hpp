@@ -2,9 +2,9 @@
 // checks every result.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,15 +15,22 @@ namespace riffler::stress {
 /// Poses of a session with one part and one tool; each has one query, one distance and one query with a budget.
 constexpr int kPosesOfSession = 64;
 
+/// A part from a file.
+struct NamedPart {
+  std::string name;
+  Mesh mesh;
+};
+
 struct ContactOptions {
   std::uint64_t seed = 1;
-  int reference_every = 64;     ///< poses between two comparisons with the independent reference
-  int poses = kPosesOfSession;  ///< of a session
+  int reference_every = 64;           ///< poses between two comparisons with the independent reference
+  int poses = kPosesOfSession;        ///< of a session
+  std::vector<NamedPart> parts = {};  ///< in turns, in place of the random ones of ContactScene
 };
 
 struct ContactFailure {
   std::uint64_t seed, session;
-  ContactScene scene;
+  std::string scene;  ///< or the part's name
   long pose;
   std::string problem;
 };
@@ -35,8 +42,8 @@ struct ContactTally {
 };
 
 struct ContactResults {
-  std::array<ContactTally, static_cast<std::size_t>(ContactScene::kCount)> scenes;
-  std::vector<ContactFailure> failures;  ///< the first few
+  std::map<std::string, ContactTally> scenes;  ///< by the scene's or the part's name
+  std::vector<ContactFailure> failures;        ///< the first few
   ContactTally total() const;
 };
 

@@ -13,12 +13,12 @@ constexpr long kSessions = static_cast<long>(ContactScene::kCount);  // one of e
 TEST(ContactStress, HoldsForPartsFromTheDegenerateLimits) {
   const ContactResults results = run_contacts({.reference_every = kPoses, .poses = kPoses}, kSessions * kPoses);
   for (const ContactFailure& f : results.failures)
-    ADD_FAILURE() << "pose " << f.pose << " (" << name(f.scene) << "): " << f.problem << "\nagain: " << reproducer(f);
-  for (std::size_t k = 0; k < results.scenes.size(); ++k) {
-    const ContactTally& t = results.scenes[k];
+    ADD_FAILURE() << "pose " << f.pose << " (" << f.scene << "): " << f.problem << "\nagain: " << reproducer(f);
+  EXPECT_EQ(results.scenes.size(), static_cast<std::size_t>(ContactScene::kCount));
+  for (const auto& [scene, t] : results.scenes) {
     EXPECT_EQ(t.poses, kPoses);
-    EXPECT_GT(3 * t.touching, kPoses) << name(static_cast<ContactScene>(k)) << ": hardly anything touches";
-    EXPECT_LT(t.touching, t.poses) << name(static_cast<ContactScene>(k)) << ": nothing is free";
+    EXPECT_GT(3 * t.touching, kPoses) << scene << ": hardly anything touches";
+    EXPECT_LT(t.touching, t.poses) << scene << ": nothing is free";
     EXPECT_GT(t.judged, 0);
   }
 }
