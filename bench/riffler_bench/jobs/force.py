@@ -1,4 +1,5 @@
-"""Continuity of the force: one straight stroke, sampled at different rates and pitches, against its closed form."""
+"""The force of removed material: continuity over one straight stroke, sampled at different rates and pitches, against
+its closed form; force and torque of moves that turn the tool, against an integral."""
 
 from __future__ import annotations
 
@@ -7,13 +8,18 @@ import math
 import numpy as np
 from riffler import Tool, Volume
 
-from .. import report
+from .. import removal_integral, report
 from ..measure import Progress, Settings, watched
 from ..report import Column, Report
 
 RATES = (100, 500, 1000, 4000)  # Hz
 SPEED, WAY, DEPTH, RADIUS = 40.0, 30.0, 2.0, 3.0  # mm/s, mm
-CONSTANT = 0.05  # N·s/mm³, the default of carve
+CONSTANT = removal_integral.CONSTANT  # N·s/mm³, the default of carve
+CUTTERS = {
+    "ball": Tool.ball(6, removal_integral.LENGTH),
+    "flat": Tool.flat(6, removal_integral.LENGTH),
+    "cone": Tool.profile([(0.5, 0), (4, 14)], length=removal_integral.LENGTH),
+}
 
 
 def run(settings: Settings, progress: Progress = None) -> Report:
@@ -50,7 +56,68 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         "Closed form: k · section · speed. Ripple and jump are shares of the mean over the steady part, unfiltered, as "
         "the tool's force comes out of single calls."
     )
+    turns(out, settings, progress)
     return out
+
+
+def turns(out: Report, settings: Settings, progress: Progress) -> None:
+    """Moves that turn the tool, cut in so many parts, against the integral over points and times."""
+    table = out.section(
+        "turning",
+        "Force and torque of moves that turn the tool by 20 to 54 degrees",
+        Column("cutter", "cutter"),
+        Column("move", "move"),
+        Column("rays", "directions"),
+        Column("h mm", "pitch", report.pitch),
+        Column("steps", "parts"),
+        Column("force N", "force_N", lambda f: f"{f:.3f}"),
+        Column("off", "force_off", share),
+        Column("torque N·mm", "torque_Nmm", lambda f: f"{f:.2f}"),
+        Column("off", "torque_off", share),
+        Column("volume off", "volume_off", share),
+    )
+    cutters = ("ball",) if settings.quick else tuple(removal_integral.RADII)
+    moves = list(removal_integral.MOVES)[: 1 if settings.quick else None]
+    ways = ((1, "xyz"),) if settings.quick else ((1, "z"), (16, "z"), (16, "xyz"))
+    spacing, times = (0.4, 60) if settings.quick else (0.25, 160)
+    pitch = 0.4 if settings.quick else 0.2
+    for name, label in watched([(name, move) for name in cutters for move in moves], progress):
+        move = removal_integral.MOVES[label]
+        removed, pushes, twists = removal_integral.integral(removal_integral.RADII[name], move, spacing, times)
+        for parts, directions in ways:
+            got = turning(name, move, pitch, parts, directions)
+            pairs = zip(got, (removed, pushes, twists), strict=True)
+            off = [float(np.linalg.norm(a - b) / np.linalg.norm(b)) for a, b in pairs]
+            table.row(
+                cutter=name, move=label, directions=directions, pitch=pitch, parts=parts,
+                force_N=float(np.linalg.norm(pushes)), force_off=off[1], torque_Nmm=float(np.linalg.norm(twists)),
+                torque_off=off[2], volume_off=off[0],
+            )  # fmt: skip
+            out.check(max(off) < (0.15 if parts == 1 else 0.05), f"{name}, {label}, {parts} steps, {directions}: {off}")
+    table.notes.append(
+        f"Length of the difference ÷ length of the integral, over points {spacing:g} mm apart and {times} times; the "
+        "torque is about the last tip. A step takes one direction for all that a ray loses in it."
+    )
+
+
+def turning(
+    name: str, move: removal_integral.Move, pitch: float, parts: int, directions: str
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """(removed mm³, force N, torque N·mm about the last tip) by Volume.carve, in so many steps of equal duration."""
+    volume = Volume.block(*removal_integral.BOX, pitch, directions=directions)
+    share = np.linspace(0, 1, parts + 1)[:, None]
+    angle = np.arccos(move.from_axis @ move.to_axis)
+    axes = (np.sin((1 - share) * angle) * move.from_axis + np.sin(share * angle) * move.to_axis) / np.sin(angle)
+    poses = np.hstack([(1 - share) * move.from_tip + share * move.to_tip, axes])
+    volume.carve(CUTTERS[name], poses[[0, 0]])
+    cut = volume.carve(CUTTERS[name], poses, dt=removal_integral.DT / parts, removal_constant=CONSTANT)
+    felt = cut.force / parts  # of a part of the time
+    twists = cut.torque / parts + np.cross(poses[1:, :3] - move.to_tip, felt)
+    return float(cut.removed.sum()), felt.sum(0), twists.sum(0)
+
+
+def share(value: float) -> str:
+    return f"{100 * value:.2f} %"
 
 
 def section(name: str) -> float:
