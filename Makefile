@@ -122,7 +122,7 @@ gallery:  ## Plan, measure and draw the pictures of planning, stability and the 
 	@$(ready) demo
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stability
-	for script in film mouse mouse_fixtures sole figure relief linocut characters concepts verify_map stability pen_states pen_frames; do $(python) docs/gallery/$$script.py || exit 1; done
+	for script in film mouse mouse_fixtures by_feel sole figure relief linocut characters concepts verify_map stability pen_states pen_frames; do $(python) docs/gallery/$$script.py || exit 1; done
 
 tutorials:  ## Do the tutorials in Blender's window and take their pictures: docs/images/tutorials (NAMES="relief" for some)
 	@$(ready) test

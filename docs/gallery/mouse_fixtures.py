@@ -15,17 +15,6 @@ from riffler import plan
 VIEW = {"target": (0, 0, 22), "direction": (-0.45, -0.8, 0.75), "width": 190}
 
 
-def vise(room: float = 0.0) -> list[riffler.Volume]:
-    """Two jaws at the plate's long sides and two clamps on its short ones, as dexels 1 mm apart, `room` mm larger."""
-    boxes = [
-        ((-40, 33, -30), (40, 52, 16)),
-        ((-40, -52, -30), (40, -33, 16)),
-        ((50, -9, 0), (75, 9, 10)),
-        ((-75, -9, 0), (-50, 9, 10)),
-    ]
-    return [riffler.Volume.block(np.subtract(low, room), np.add(high, room), 1.0) for low, high in boxes]
-
-
 def show(given, name: str, part, fixtures, cl, oriented, keys, entered: np.ndarray) -> None:
     picture = Picture()
     picture.mesh(part)
@@ -39,7 +28,7 @@ def show(given, name: str, part, fixtures, cl, oriented, keys, entered: np.ndarr
 
 def main() -> None:
     given = options(__doc__)
-    part, fixtures = parts.mouse(160 if given.fast else 480), vise()
+    part, fixtures = parts.mouse(160 if given.fast else 480), parts.vise()
     alone, all_of_it = riffler.Collider(part), riffler.Collider(part, fixtures=fixtures)
     path = max(plan.pencil(part, TOOL), key=lambda p: p.length)
 
@@ -56,7 +45,7 @@ def main() -> None:
     tips = np.hstack([first.centres - first.radius * first.axes, first.axes])
 
     # Keys stay 2 mm from the vise, so that what is interpolated between them does not enter it.
-    keys = keys_from_maps(path, riffler.Collider(part, fixtures=vise(2.0)), count=24)
+    keys = keys_from_maps(path, riffler.Collider(part, fixtures=parts.vise(2.0)), count=24)
     corrected = path.orient(keys, interpolation="smooth")
     cl, report = plan.cutter_locations(corrected, TOOL, all_of_it)
     print(f"corrected: {report}, nowhere deeper than {-report.bound:.4f} mm")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from riffler import Mesh
+from riffler import Mesh, Volume
 
 Ring = np.ndarray  # (n, 3), counter-clockwise seen from above
 
@@ -137,3 +137,15 @@ def sole(points: int = 640) -> Mesh:
     for t in np.linspace(1, 0, 28)[1:-1]:
         rings.append(at_height(corner * [t, t, 1], floor))
     return loft(rings)
+
+
+def vise(room: float = 0.0) -> list[Volume]:
+    """For the mouse: two jaws at the plate's long sides and two clamps on its short ones, as dexels 1 mm apart, each
+    `room` mm larger."""
+    boxes = [
+        ((-40, 33, -30), (40, 52, 16)),
+        ((-40, -52, -30), (40, -33, 16)),
+        ((50, -9, 0), (75, 9, 10)),
+        ((-75, -9, 0), (-50, 9, 10)),
+    ]
+    return [Volume.block(np.subtract(low, room), np.add(high, room), 1.0) for low, high in boxes]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 GALLERY = Path(__file__).parents[3] / "docs" / "gallery"
-SCRIPTS = ["mouse", "mouse_fixtures", "sole", "verify_map", "pen_frames", "pen_counts"]
+SCRIPTS = ["mouse", "mouse_fixtures", "by_feel", "sole", "verify_map", "pen_frames", "pen_counts"]
 SCRIPTS += ["concepts", "figure", "relief", "linocut", "characters"]
 
 
