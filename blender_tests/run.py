@@ -368,12 +368,17 @@ def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
     mode = arguments.mode or (users if users in bench.zips else "source")
     if mode not in ("source", users):
         return []
-    # The tutorials take longest: first, so that none is left over for the end.
-    scripts = [file for kind in ("tutorial", "window") for file in sorted((HERE / "windowed").glob(f"{kind}_*.py"))]
-    chosen = [script for script in scripts if arguments.only in script.stem]
+    chosen = [script for script in longest_first() if arguments.only in script.stem]
     return [
         partial(window.run, bench, application, mode, script, FIRST_DISPLAY + 10 * k) for k, script in enumerate(chosen)
     ]
+
+
+def longest_first() -> list[Path]:
+    """The scripts of windows, so that none is left over for the end: those that wait for Blender's autosave, a minute
+    in which other processes have the cores (their line `AUTOSAVES = True`), then the tutorials, then the others."""
+    scripts = sorted((HERE / "windowed").glob("tutorial_*.py")) + sorted((HERE / "windowed").glob("window_*.py"))
+    return sorted(scripts, key=lambda script: "\nAUTOSAVES = True\n" not in script.read_text())
 
 
 def validate(bench: Bench) -> None:

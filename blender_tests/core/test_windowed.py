@@ -1,11 +1,16 @@
 """Scripts of windows: steps that never run would be tests that cannot fail."""
 
 import ast
+import sys
 from pathlib import Path
 
 import pytest
 
-SCRIPTS = sorted((Path(__file__).parents[1] / "windowed").glob("*.py"))
+HERE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(HERE))
+import run  # noqa: E402
+
+SCRIPTS = sorted((HERE / "windowed").glob("*.py"))
 TREES = {script: ast.parse(script.read_text()) for script in SCRIPTS}
 
 
@@ -29,3 +34,10 @@ def test_all_steps_are_taken(script):
         if isinstance(node, ast.Call) and (name := getattr(node.func, "attr", getattr(node.func, "id", ""))) in parts:
             taken_by_the_driver = name in ("steps", "in_vain")
             assert id(node) in taken or taken_by_the_driver, f"{script.name}, line {node.lineno}: no step runs {name}"
+
+
+def test_those_that_wait_for_an_autosave_begin_first():
+    waiting = {script for script in SCRIPTS if "auto_save_time" in script.read_text()}
+    first = run.longest_first()
+    assert waiting and set(first[: len(waiting)]) == waiting
+    assert set(first) == {script for script in SCRIPTS if script.stem.startswith(("tutorial_", "window_"))}
