@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress fuzz scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package release-linux clean
+.PHONY: help setup envs demo test test-quick test-cpp test-python test-docs test-tools test-blender test-blenders soak stress fuzz scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package release-linux clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -27,6 +27,10 @@ demo:  ## Carve the demo figure, mill a bust of it, write STL and NC code, rende
 test:  ## Run every test: C++, Python, tools, documents, Blender (SUITES="… lint sanitize" for others)
 	@$(ready) test
 	@$(python) tools/test.py $(SUITES)
+
+test-quick:  ## After a change: the C++ and Python tests without those that cost most at the last complete run
+	@$(ready) cpp-tests
+	@$(python) tools/test.py quick
 
 test-cpp:  ## Run the C++ tests only
 	@$(ready) cpp-tests

@@ -10,6 +10,7 @@ import json
 import sys
 
 import compiler_cache
+import costs
 import gtest_batches
 from shell import ROOT, StepError, cores, main, run, say
 
@@ -22,12 +23,17 @@ def build_preset(preset: str, *targets: str) -> None:
     run("cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else []))
 
 
-def test_preset(preset: str) -> None:
-    """Every C++ test, in a process for every few of them: to start and to end one takes longer than most tests."""
+def test_preset(preset: str, budget: float | None = None) -> None:
+    """Every C++ test, in a process for every few of them: to start and to end one takes longer than most tests.
+    `budget`: without the costliest, so that the others take so many seconds of processor time."""
     build_preset(preset, "riffler_tests")
     program = ROOT / "build" / preset / "native" / "tests" / "riffler_tests"
+    left = [] if budget is None else costs.left_out(preset, budget)
     try:
-        print_slowest(preset, gtest_batches.run_tests(program, left_out(preset)))
+        times = gtest_batches.run_tests(program, left_out(preset), left)
+        print_slowest(preset, times)
+        if budget is None:
+            costs.record(preset, {name: seconds for seconds, name in times})
     finally:  # a program of its own, in a wrapper that CMake knows
         run("ctest", "--preset", preset, "--tests-regex", "^StockHidapi", "--parallel", str(cores()))
 

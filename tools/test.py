@@ -1,6 +1,7 @@
 """Runs the test suites, several at a time, all of them even if one fails; closes with a table of results and times.
 
-    tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, asan, sanitize
+    tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, asan, sanitize,
+                                   quick
 
 One suite alone prints as it goes. Several print their output whole, each when it ends, and a line every half minute
 says what runs; the full texts stay in build/tests. Stages come one after the other. In a stage, suites of one lane run
@@ -19,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import compiler_cache
+import costs
 import package
 from preset import build_preset, test_preset
 from shell import PYTHON, ROOT, StepError, cores, main, run, say, tool_environment
@@ -29,19 +31,35 @@ HEARTBEAT = 30  # s
 FAILURE = re.compile(r"^(FAILED|ERROR|E  |  failed )|\[  FAILED  \]|[Ee]rror: |\bFAILED\b")
 REASON = " " * 6  # begins the lines of a reason (blender_tests/run.py)
 FAILURES_SHOWN = 25
+# Seconds of processor time of a quick run's tests.
+QUICK_CPP, QUICK_PYTHON = 80.0, 160.0
 
 
 def cpp() -> None:
     test_preset("release")
 
 
-def python() -> None:
+def python(budget: float | None = None) -> None:
     """Many tests wait for a pen's clock, and many use all cores themselves: two processes a core, within bounds. They
-    share the tests' bytecode, even where the caller writes none: each would compile all tests again."""
+    share the tests' bytecode, even where the caller writes none: each would compile all tests again. `budget`: without
+    the costliest, so that the others take so many seconds of processor time."""
     processes = min(4, 2 * cores())
     options = ["-n", str(processes), "--dist", "loadfile", "--durations=20", "--durations-min=0.5"]
-    environment = tool_environment(PYTHONDONTWRITEBYTECODE="")
+    costs.FOLDER.mkdir(parents=True, exist_ok=True)
+    cost_files = {"RIFFLER_TEST_COSTS": str(costs.file_of("python"))}
+    if budget is not None:
+        costs.record("left-out", dict.fromkeys(costs.left_out("python", budget), 0.0))
+        cost_files = {"RIFFLER_TESTS_LEFT_OUT": str(costs.file_of("left-out"))}
+    environment = tool_environment(PYTHONDONTWRITEBYTECODE="", **cost_files)
     run(PYTHON, "-m", "pytest", *options, "native/tests/python", env=environment)
+
+
+def quick() -> None:
+    """After a change: the C++ and the Python tests without the costliest."""
+    try:
+        test_preset("release", QUICK_CPP)
+    finally:
+        python(QUICK_PYTHON)
 
 
 def tools() -> None:
@@ -100,6 +118,7 @@ class Suite:
 SUITES = {
     "cpp": Suite(cpp, stage=0),
     "python": Suite(python),
+    "quick": Suite(quick, always=False),
     "tools": Suite(tools, lane=2),
     "docs": Suite(docs, lane=2),
     "blender": Suite(blender, lane=1),

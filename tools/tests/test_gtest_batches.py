@@ -54,6 +54,11 @@ def test_passing_tests_report_their_times_and_excluded_ones_do_not_run(tmp_path)
     assert {seconds for seconds, _ in times} == {0.5}
 
 
+def test_tests_that_are_named_are_left_out(tmp_path):
+    times = gtest_batches.run_tests(program(tmp_path, "Passes", "Fails"), left=["Few.Fails"])
+    assert [name for _, name in times] == ["Few.Passes"]
+
+
 def test_a_recorded_processor_time_replaces_the_time(tmp_path):
     times = gtest_batches.run_tests(program(tmp_path, "Passes", "Records"))
     assert sorted(times) == [(0.25, "Few.Records"), (0.5, "Few.Passes")]

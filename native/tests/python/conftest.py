@@ -1,7 +1,10 @@
 """Lists the tests by what they cost: their processor time, which other work on the computer hardly changes."""
 
+import json
+import os
 import time
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -50,6 +53,15 @@ def pytest_runtest_makereport(item, call):
     item.user_properties.append((MARK, item.stash.get(SPENT, 0.0)))
 
 
+def pytest_collection_modifyitems(config, items):
+    """Leaves out the tests that the file RIFFLER_TESTS_LEFT_OUT names: tools/costs.py."""
+    if named := os.environ.get("RIFFLER_TESTS_LEFT_OUT"):
+        names = json.loads(Path(named).read_text())
+        left = [item for item in items if item.nodeid in names]
+        items[:] = [item for item in items if item.nodeid not in names]
+        config.hook.pytest_deselected(items=left)
+
+
 def pytest_terminal_summary(terminalreporter):
     spent = Counter()
     for reports in terminalreporter.stats.values():
@@ -58,9 +70,12 @@ def pytest_terminal_summary(terminalreporter):
                 spent[report.nodeid, report.when] += dict(report.user_properties).get(MARK, 0.0)
     if not spent:
         return
-    files = Counter()
+    tests, files = Counter(), Counter()
     for (name, _), seconds in spent.items():
+        tests[name] += seconds
         files[name.split("::")[0]] += seconds
+    if costs := os.environ.get("RIFFLER_TEST_COSTS"):
+        Path(costs).write_text(json.dumps(tests, indent=0) + "\n")
     terminalreporter.section(
         f"the costliest of {len({n for n, _ in spent})} tests, {sum(spent.values()):.0f} s of processor time"
     )
