@@ -26,7 +26,7 @@ KEYS = 17
 STEP = 0.02  # s, of the hand
 SPEED = 18.0  # mm/s, of the hand along the path; it waits where it feels more than it likes
 WIDEST = np.radians(38)  # that the hand leans outwards where it feels nothing
-TORQUE, FORCE = 20.0, 0.6  # N·mm and N at which it stops leaning; it gives travelled where it feels more
+TORQUE, FORCE = 20.0, 0.6  # N·mm and N at which it stops leaning; it yields where it feels more
 
 
 def nose(path) -> np.ndarray:
