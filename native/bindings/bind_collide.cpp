@@ -225,7 +225,8 @@ part : Mesh or Surface
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
-    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
+    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000), of an exact
+    `Surface` √(area / 400 000).
 stiffness : float, N per mm of depth and mm² of surface
     Against the cutter.
 holder_stiffness : float, N per mm of depth and mm² of surface
@@ -265,7 +266,8 @@ part : Mesh or Surface
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
-    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
+    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000), of an exact
+    `Surface` √(area / 400 000).
 stiffness : float, N per mm of depth and mm² of surface
     Against the cutter.
 holder_stiffness : float, N per mm of depth and mm² of surface

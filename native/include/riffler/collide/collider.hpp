@@ -27,7 +27,8 @@ class Collider {
   };
   /// Point spacing and stiffnesses of the force model (4.4).
   struct Settings {
-    double spacing = 0;            ///< distance of the sample points on the part, mm; 0: √(part area / 100 000)
+    /// Distance of the sample points on the part, mm; 0: √(area / 100 000), of an exact part √(area / 400 000).
+    double spacing = 0;
     double coarse = 4;             ///< factor on `spacing` for points that only shank and holder can touch
     double stiffness = 1;          ///< k of (4.7) for the cutter, N per mm of depth and mm² of surface
     double holder_stiffness = 10;  ///< the same for shank and holder (4.4.3: tracing weak, collision strong)
