@@ -4,6 +4,7 @@ import ctypes
 import importlib
 import os
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -14,6 +15,7 @@ from support import report
 JOB = {}
 MODULE = ""
 Skip = RuntimeError
+QUICK = 0.06  # s, of slowness() on a computer that compiles the core in six minutes
 BALL = '{"kind": "ball", "diameter": 6.0, "length": 30.0}'
 FLAT = '{"kind": "flat", "diameter": 6.0, "length": 30.0}'
 
@@ -181,6 +183,22 @@ def _flush():
     """Blender prints some of it itself, and some through Python."""
     sys.stdout.flush()
     ctypes.CDLL(None).fflush(None)
+
+
+def slowness(clock=time.process_time):
+    """How many times longer than on a quick computer a fixed computation takes now, at least 1: by that much a test's
+    hand is slower, so that it finds what grows with the model and not what kind of computer runs it, or what else does.
+    The computation gathers from memory and interprets Python, and uses nothing of Riffler."""
+    random = np.random.default_rng(1)
+    values, order = random.random(2_000_000), random.permutation(2_000_000)
+    took = []
+    for _ in range(3):
+        begin = clock()
+        total = values[order].cumsum()[-1]
+        for k in range(300_000):
+            total += k * k
+        took.append(clock() - begin)
+    return max(1.0, max(took) / QUICK)
 
 
 def figure(name, value):

@@ -1,6 +1,7 @@
 """A mouse at 125 events a second, from outside, on 1.3 million triangles: the time from a place of the hand until its
 material is gone, from the first second to the last, and until the stroke is over. The software renderer takes half a
-second for a picture of that; with the chunks drawn as boxes only the time of Riffler and Blender is left."""
+second for a picture of that; with the chunks drawn as boxes only the time of Riffler and Blender is left. On a slow or
+busy computer the hand sends fewer events, except for measurements."""
 
 import json
 import subprocess
@@ -20,7 +21,7 @@ strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
 # Another process, so that nothing here slows the hand; perf_counter is one clock for all.
 HAND = """
 import json, subprocess, sys, time
-places, path = json.loads(sys.argv[1]), sys.argv[2]
+places, path, rate = json.loads(sys.argv[1]), sys.argv[2], float(sys.argv[3])
 xdotool = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE)
 def send(line):
     xdotool.stdin.write(line.encode() + b"\\n"); xdotool.stdin.flush()
@@ -29,7 +30,7 @@ send("mousemove %d %d" % tuple(places[0])); time.sleep(0.5)
 send("mousedown 1"); time.sleep(0.3)
 begin, sent = time.perf_counter(), []
 for k, (x, y) in enumerate(places):
-    time.sleep(max(0, begin + k / 125 - time.perf_counter()))
+    time.sleep(max(0, begin + k / rate - time.perf_counter()))
     sent.append([x, y, send("mousemove %d %d" % (x, y))])
 end = send("mouseup 1")
 xdotool.stdin.close(); xdotool.wait()
@@ -40,14 +41,14 @@ json.dump({"sent": sent, "end": end}, open(path, "w"))
 def circles(screen, seconds):
     """Pixels of the display, y down: a spiral, so that each pixel has its own time."""
     middle = strokes.pixel(screen, (0.5 * SIDE, 0.5 * SIDE, 10))
-    n = int(125 * seconds)
+    n = int(RATE * seconds)
     turn = np.cumsum(np.full(n, 2 * np.pi / 250))  # a turn in two seconds
     radius = np.linspace(60, 160, n)
     x, y = middle[0] + radius * np.cos(turn), middle[1] + radius * np.sin(turn)
     return np.c_[x, screen.window.height - 1 - y].round().astype(int)
 
 
-SIDE = 130.0
+SIDE, RATE = 130.0, 125  # mm, 1/s
 
 
 class Watch:
@@ -89,12 +90,14 @@ class Watch:
 
 
 def timed_stroke(screen, name, seconds):
+    slow = 1.0 if harness.job["measure"] else common.slowness(time.perf_counter)
+    common.figure("the hand is slower by", round(slow, 2))
     places = circles(screen, seconds)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hand.json"
         watch, operator = Watch(), common.part("sculpt.stroke_operator")
         operator.last = ""
-        hand = subprocess.Popen([sys.executable, "-c", HAND, json.dumps(places.tolist()), str(path)])
+        hand = subprocess.Popen([sys.executable, "-c", HAND, json.dumps(places.tolist()), str(path), str(RATE / slow)])
         yield lambda: operator.last  # a short one is over before its beginning can be polled
         ended = time.perf_counter()
         watch.shown.append((ended, len(watch.added)))
@@ -104,7 +107,7 @@ def timed_stroke(screen, name, seconds):
     region = screen.region()
     lags = watch.lags(told, (region.x, region.y), screen.window.height)
     table = []
-    for low in range(0, int(seconds), 2):
+    for low in range(0, int(seconds * slow), 2):
         part = lags[(lags[:, 0] >= low) & (lags[:, 0] < low + 2), 1]
         table.append([low, *np.round(np.percentile(part, (50, 95)) if len(part) else (0, 0), 3).tolist(), len(part)])
     over = ended - told["end"]
@@ -115,7 +118,7 @@ def timed_stroke(screen, name, seconds):
     figures = [{k: round(v, 1) for k, v in stages.milliseconds().items()}, *np.round(stages.lag())]
     common.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
     common.figure(f"{name}: looks; stroke over after the hand, s", [len(watch.shown), round(over, 2)])
-    return lags, over
+    return lags, over, slow
 
 
 def keeps_up(lags, over, seconds):
@@ -152,6 +155,6 @@ def steps(screen):
         strokes.settings().mirror = set(mirror)
         yield 1.0
         name = "Mirror X" if mirror else "plain"
-        lags, over = yield from timed_stroke(screen, f"{name}, {drawn}", seconds)
-        keeps_up(lags, over, seconds)
+        lags, over, slow = yield from timed_stroke(screen, f"{name}, {drawn}", seconds)
+        keeps_up(lags, over, seconds * slow)
         yield 2.0

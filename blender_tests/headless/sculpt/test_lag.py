@@ -1,5 +1,6 @@
 """The delay for a hand of 125 events a second on 1.3 million triangles, in this process's own processor time: other
-work of the computer does not count, nor does drawing, which a graphics card does."""
+work of the computer does not count, nor does drawing, which a graphics card does. On a slow computer the hand is slower
+in proportion."""
 
 import time
 
@@ -8,12 +9,12 @@ import numpy as np
 
 from support import common
 
-SIDE, RATE = 130.0, 125
+SIDE, RATE = 130.0, 125  # mm, 1/s
 TRIES = 3  # other work displaces the caches, and so slows this process, for a part of a stroke
 
 
 def spiral(seconds):
-    """Pixels of 0.25 mm: a turn in two seconds, 400 pixels a second."""
+    """Pixels of 0.25 mm: a turn in two seconds, 400 pixels a second, on a quick computer."""
     n = RATE * seconds
     turn = np.linspace(0, np.pi * seconds, n)
     radius = np.linspace(120, 140, n)  # nearly constant speed: a faster hand reaches more chunks
@@ -22,7 +23,7 @@ def spiral(seconds):
 
 def waits(live, mirror, seconds):
     """Seconds from each place of the hand to the end of the update that shows it; the clock advances with this work
-    only."""
+    only, and runs slower on a slow computer."""
     brush, symmetry = common.part("sculpt.pure.brush_stroke"), common.part("sculpt.pure.symmetry")
     sample, look = common.part("sculpt.pure.stroke_path").Sample, common.part("sculpt.stroke_operator").LOOK
     sight = common.part("sculpt.pure.view_rays").ViewRays(
@@ -30,7 +31,7 @@ def waits(live, mirror, seconds):
     )
     live.maps = symmetry.maps(mirror)
     made = brush.BrushStroke(live, {"kind": "ball", "diameter": 6.0, "length": 30.0}, sight, brush.Choice(depth=0.5))
-    places, now, done, out = spiral(seconds), 0.0, 0, []
+    places, now, done, out, slow = spiral(seconds), 0.0, 0, [], common.slowness()
     while done < len(places):
         now = max(now, done / RATE)  # a hand that waits for the loop
         waiting = places[done : int(now * RATE) + 1]
@@ -39,7 +40,7 @@ def waits(live, mirror, seconds):
             made.add(sample(x, y, time=k / RATE))
         made.look()
         bpy.context.view_layer.update()
-        cost = time.process_time() - begin
+        cost = (time.process_time() - begin) / slow
         out += [now + cost - k / RATE for k in range(done, done + len(waiting))]
         done += len(waiting)
         now += max(cost, look)
