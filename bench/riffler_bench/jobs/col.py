@@ -141,9 +141,9 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         Column("FCL, all contacts: mean", "fcl_s", report.micro),
         Column("FCL, 99 %", "fcl_p99_s", report.micro),
         Column("Riffler ÷ FCL: mean", "mean_ratio", report.ratio),
-        Column("99 %", "p99_ratio", report.ratio),
+        Column("Riffler ÷ FCL: 99 %", "p99_ratio", report.ratio),
         Column("Riffler ÷ Coal: mean", "coal_mean_ratio", report.ratio),
-        Column("99 %", "coal_p99_ratio", report.ratio),
+        Column("Riffler ÷ Coal: 99 %", "coal_p99_ratio", report.ratio),
         Column("out of reach", "away_s", report.micro),
     )
     found = models(settings)
