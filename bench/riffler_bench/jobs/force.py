@@ -71,9 +71,9 @@ def turns(out: Report, settings: Settings, progress: Progress) -> None:
         Column("h mm", "pitch", report.pitch),
         Column("steps", "parts"),
         Column("force N", "force_N", lambda f: f"{f:.3f}"),
-        Column("off", "force_off", share),
+        Column("force off", "force_off", share),
         Column("torque N·mm", "torque_Nmm", lambda f: f"{f:.2f}"),
-        Column("off", "torque_off", share),
+        Column("torque off", "torque_off", share),
         Column("volume off", "volume_off", share),
     )
     cutters = ("ball",) if settings.quick else tuple(removal_integral.RADII)

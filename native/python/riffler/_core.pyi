@@ -3028,7 +3028,7 @@ class Collider:
             Each may have its own pitch; empty ones are ignored.
         spacing : float, mm, or None
             Spacing of the points on the part over which forces are summed. Default: √(area / 100 000), of an exact
-        `Surface` √(area / 400 000).
+            `Surface` √(area / 400 000).
         stiffness : float, N per mm of depth and mm² of surface
             Against the cutter.
         holder_stiffness : float, N per mm of depth and mm² of surface
