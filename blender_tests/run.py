@@ -376,9 +376,9 @@ def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
 
 def longest_first() -> list[Path]:
     """The scripts of windows, so that none is left over for the end: those that wait for Blender's autosave, a minute
-    in which other processes have the cores (their line `AUTOSAVES = True`), then the tutorials, then the others."""
+    in which other processes have the cores, then the tutorials, then the others."""
     scripts = sorted((HERE / "windowed").glob("tutorial_*.py")) + sorted((HERE / "windowed").glob("window_*.py"))
-    return sorted(scripts, key=lambda script: "\nAUTOSAVES = True\n" not in script.read_text())
+    return sorted(scripts, key=lambda script: "auto_save_time" not in script.read_text())
 
 
 def validate(bench: Bench) -> None:

@@ -9,7 +9,7 @@ target_compile_options(
             # instructions. Results are the same to the bit.
             -fno-math-errno -fno-trapping-math)
 # Highway's sources are compiled for each set of instructions. A processor with SSSE3 and without SSE4 (of 2006) takes the
-# scalar ones: Blender itself needs SSE 4.2.
+# scalar ones: Blender 4.2 and later need SSE 4.2.
 target_compile_definitions(riffler_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
 # A shared library is loaded only where something of it is called.
 if(NOT WIN32)

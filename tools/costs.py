@@ -39,7 +39,7 @@ def costliest(seconds: dict[str, float], budget: float) -> list[str]:
     return left
 
 
-def left_out(suite: str, budget: float) -> list[str]:
+def too_costly(suite: str, budget: float) -> list[str]:
     """The tests that a quick run of a suite leaves out, which it reports."""
     seconds = known(suite)
     names = costliest(seconds, budget)

@@ -28,7 +28,7 @@ def test_preset(preset: str, budget: float | None = None) -> None:
     `budget`: without the costliest, so that the others take so many seconds of processor time."""
     build_preset(preset, "riffler_tests")
     program = ROOT / "build" / preset / "native" / "tests" / "riffler_tests"
-    left = [] if budget is None else costs.left_out(preset, budget)
+    left = [] if budget is None else costs.too_costly(preset, budget)
     try:
         times = gtest_batches.run_tests(program, left_out(preset), left)
         print_slowest(preset, times)

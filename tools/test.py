@@ -10,6 +10,7 @@ one after the other, lanes in parallel.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -48,8 +49,9 @@ def python(budget: float | None = None) -> None:
     costs.FOLDER.mkdir(parents=True, exist_ok=True)
     cost_files = {"RIFFLER_TEST_COSTS": str(costs.file_of("python"))}
     if budget is not None:
-        costs.record("left-out", dict.fromkeys(costs.left_out("python", budget), 0.0))
-        cost_files = {"RIFFLER_TESTS_LEFT_OUT": str(costs.file_of("left-out"))}
+        left_out = costs.file_of("left-out")
+        left_out.write_text(json.dumps(costs.too_costly("python", budget)))
+        cost_files = {"RIFFLER_TESTS_LEFT_OUT": str(left_out)}
     environment = tool_environment(PYTHONDONTWRITEBYTECODE="", **cost_files)
     run(PYTHON, "-m", "pytest", *options, "native/tests/python", env=environment)
 

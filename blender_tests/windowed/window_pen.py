@@ -13,7 +13,6 @@ from support import common, harness
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 NAME = "Stock"
-AUTOSAVES = True
 TOP = 20.0  # mm, of the block
 MINUTE = 60.0  # s: Blender makes its autosave no sooner
 SEEN = 0.12  # N: an arrow that is longer than its head

@@ -12,7 +12,6 @@ from support.sculpting import live, matches_its_volume, nothing_is_left, stroke,
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 NAME = "Stock"
-AUTOSAVES = True
 
 
 class Tool(bpy.types.WorkSpaceTool):

@@ -18,7 +18,6 @@ namespace {
 /// A list whose items the signature names.
 using VolumeList = py::typing::List<std::shared_ptr<SharedVolume>>;
 
-/// What is given of a box, and of `own` what is not.
 auto grown_volume(SharedVolume& self, const OptionalArrayLike& lower, const OptionalArrayLike& upper,
                   const ProgressLike& progress) {
   const Volume state = Reading(self).volume.snapshot();

@@ -13,7 +13,6 @@ std::shared_ptr<SharedVolume> empty(const ArrayLike& lower, const ArrayLike& upp
   return share(Volume({{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions}));
 }
 
-/// What is given of a box, and of `own` what is not.
 auto sphere_volume(const ArrayLike& centre, double radius, double pitch, const std::string& directions,
                    const OptionalArrayLike& lower, const OptionalArrayLike& upper, const ProgressLike& progress) {
   const dexel::Sphere solid{to_vec3(centre, "centre"), radius};

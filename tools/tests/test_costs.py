@@ -29,13 +29,13 @@ def test_the_fewest_tests_are_left_out_that_bring_the_others_within_the_budget()
 
 
 def test_without_a_complete_run_every_test_runs(capsys):
-    assert costs.left_out("cpp", 0) == []
+    assert costs.too_costly("cpp", 0) == []
     assert "cpp: no complete run yet" in capsys.readouterr().out
 
 
 def test_what_is_left_out_is_counted(capsys):
     costs.record("cpp", {"a": 1.0, "b": 5.0, "c": 2.0})
-    assert costs.left_out("cpp", 4) == ["b"]
+    assert costs.too_costly("cpp", 4) == ["b"]
     assert "cpp: 1 of 3 tests left out, which cost 5 of 8 s" in capsys.readouterr().out
 
 
@@ -43,7 +43,7 @@ def test_what_is_left_out_is_counted(capsys):
 def test_a_damaged_file_leaves_nothing_out(folder, text):
     folder.mkdir()
     costs.file_of("cpp").write_text(text)
-    assert costs.left_out("cpp", 0) == []
+    assert costs.too_costly("cpp", 0) == []
 
 
 def test_pytest_writes_the_costs_and_leaves_out_what_is_named(tmp_path):

@@ -56,7 +56,7 @@ def pytest_runtest_makereport(item, call):
 def pytest_collection_modifyitems(config, items):
     """Leaves out the tests that the file RIFFLER_TESTS_LEFT_OUT names: tools/costs.py."""
     if named := os.environ.get("RIFFLER_TESTS_LEFT_OUT"):
-        names = json.loads(Path(named).read_text())
+        names = set(json.loads(Path(named).read_text()))
         left = [item for item in items if item.nodeid in names]
         items[:] = [item for item in items if item.nodeid not in names]
         config.hook.pytest_deselected(items=left)
